@@ -1,0 +1,33 @@
+/* cli.h - what the command lines of the programs share
+ *
+ * A request that is wrong ends a program with status 2 and one sentence.
+ */
+#ifndef BSDF_CLI_H
+#define BSDF_CLI_H
+
+#include <stdint.h>
+
+#include "bsdf/bands.h"
+#include "bsdf/err.h"
+#include "bsdf/vec.h"
+
+enum { EXIT_SOUND = 0, EXIT_UNSOUND = 1, EXIT_REQUEST = 2 };
+
+#define BSDF_VERSION "0.1.0"
+
+/** Reads "THETA,PHI" in degrees, theta in [0, 180], phi finite. */
+bool cli_direction(struct vec3 *w, const char *text, struct err *err);
+
+/** Reads a whole number in [min, max], in digits or as 1e6; what names it. */
+bool cli_count(uint64_t *n, const char *what, const char *text, uint64_t min,
+               uint64_t max, struct err *err);
+
+/** Reads a number in [min, max]. */
+bool cli_number(double *x, const char *what, const char *text, double min,
+                double max, struct err *err);
+
+/** Makes a database folder the one that material names are looked up in, by
+ * setting BSDF_IOR_PATH for this process; the folder must be there. */
+bool cli_ior_path(const char *path, struct err *err);
+
+#endif
