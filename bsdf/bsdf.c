@@ -1,0 +1,418 @@
+/* bsdf.c - from a spec to an instance, and calls into the model
+ *
+ * A spec is read once, here; the models contain no parsing.
+ */
+#include "bsdf/bsdf.h"
+
+#include <assert.h>
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct bsdf {
+    const struct bsdf_type *type;
+    struct bands bands;
+    char *spec;
+    void *state;
+};
+
+enum { NAME_MAX_LENGTH = 64, VALUE_MAX_LENGTH = 4096, WORDS_MAX = 64 };
+
+/* One key=value, unquoted. */
+struct setting {
+    char key[NAME_MAX_LENGTH];
+    char value[VALUE_MAX_LENGTH];
+};
+
+static bool name_char(char c)
+{
+    return isalnum((unsigned char)c) || c == '_';
+}
+
+static bool value_unquote(const char **at, char *value, const char *spec,
+                          struct err *err)
+{
+    size_t n = 0;
+    const bool quoted = **at == '\'';
+    for (const char *p = *at + quoted;; p++) {
+        if (quoted && *p == '\0')
+            return err_set(err,
+                           "\"%.200s\": the quote at \"%.40s\" is never "
+                           "closed",
+                           spec, *at);
+        if (quoted && p[0] == '\'' && p[1] != '\'') {
+            *at = p + 1;
+            break;
+        }
+        if (!quoted && (*p == ',' || *p == '\0')) {
+            *at = p;
+            break;
+        }
+        if (quoted && *p == '\'')
+            p++;
+        if (n + 1 >= VALUE_MAX_LENGTH)
+            return err_set(err,
+                           "\"%.40s...\": a value is longer than %d "
+                           "characters",
+                           spec, VALUE_MAX_LENGTH - 1);
+        value[n++] = *p;
+    }
+    value[n] = '\0';
+    return true;
+}
+
+/* Reads one setting and the comma behind it. */
+static bool setting_read(const char **at, struct setting *s, const char *spec,
+                         struct err *err)
+{
+    size_t n = 0;
+    const char *p = *at;
+    while (name_char(p[n]))
+        n++;
+    if (n == 0 || n >= sizeof s->key || p[n] != '=')
+        return err_set(err, "\"%.200s\": expected key=value at \"%.40s\"", spec,
+                       p);
+    memcpy(s->key, p, n);
+    s->key[n] = '\0';
+    *at = p + n + 1;
+    if (!value_unquote(at, s->value, spec, err))
+        return false;
+    if (**at != ',' && **at != '\0')
+        return err_set(err,
+                       "\"%.200s\": expected a comma or the end at "
+                       "\"%.40s\"",
+                       spec, *at);
+    if (**at == ',' && *++*at == '\0')
+        return err_set(err,
+                       "\"%.200s\": expected key=value after the last "
+                       "comma",
+                       spec);
+    return true;
+}
+
+/* Fails with the words to choose from and the near miss. */
+static bool unknown(const char *what, const char *meant,
+                    const char *const words[], struct err *err)
+{
+    char list[512] = "";
+    for (int i = 0; words[i]; i++) {
+        const size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "",
+                 words[i]);
+    }
+    const char *near = err_nearest(meant, words);
+    if (near)
+        return err_set(err,
+                       "%s \"%.60s\" is unknown: did you mean \"%s\"? "
+                       "There is: %s",
+                       what, meant, near, list);
+    return err_set(err, "%s \"%.60s\" is unknown; there is: %s", what, meant,
+                   list[0] ? list : "nothing to set");
+}
+
+static bool number_read(const struct bsdf_type *type,
+                        const struct bsdf_param *p, const char *text,
+                        size_t length, double *value, struct err *err)
+{
+    char copy[64], *end = copy;
+    if (length < sizeof copy) {
+        memcpy(copy, text, length);
+        copy[length] = '\0';
+        if (!isspace((unsigned char)copy[0]))
+            *value = strtod(copy, &end);
+    }
+    if (length == 0 || length >= sizeof copy || end != copy + length)
+        return err_set(err, "%s: %s=%.60s: expected a number at \"%.60s\"",
+                       type->name, p->key, text, text);
+    if (!(*value >= p->min && *value <= p->max)) /* a NaN fails too */
+        return err_set(err, "%s: %s = %g is outside [%g, %g]", type->name,
+                       p->key, *value, p->min, p->max);
+    return true;
+}
+
+static bool spectrum_read(const struct bsdf_type *type,
+                          const struct bsdf_param *p, const char *text,
+                          int count, struct spectrum *s, struct err *err)
+{
+    int n = 0;
+    struct spectrum read = { { 0 } };
+    for (const char *at = text;;) {
+        const size_t length = strcspn(at, "/");
+        double value;
+        if (!number_read(type, p, at, length, &value, err))
+            return false;
+        if (n < BANDS_MAX)
+            read.band[n] = value;
+        n++;
+        at += length;
+        if (*at++ == '\0')
+            break;
+    }
+    if (n != 1 && n != count)
+        return err_set(err,
+                       "%s: %s=%.60s has %d values; expected one, or one "
+                       "for each of the %d bands",
+                       type->name, p->key, text, n, count);
+    *s = n == 1 ? spectrum_of(count, read.band[0]) : read;
+    return true;
+}
+
+static bool word_read(const struct bsdf_type *type, const struct bsdf_param *p,
+                      const char *const words[], const char *text, int *index,
+                      struct err *err)
+{
+    for (*index = 0; words[*index]; ++*index)
+        if (strcmp(words[*index], text) == 0)
+            return true;
+    char what[160];
+    snprintf(what, sizeof what, "%s: %s", type->name, p->key);
+    return unknown(what, text, words, err);
+}
+
+static bool value_read(const struct bsdf_type *type, const struct bsdf_param *p,
+                       const char *text, int count, void *field,
+                       struct err *err)
+{
+    static const char *const flag[] = { "false", "true", NULL };
+    switch (p->kind) {
+    case BSDF_NUMBER:
+        return number_read(type, p, text, strlen(text), field, err);
+    case BSDF_SPECTRUM:
+        return spectrum_read(type, p, text, count, field, err);
+    case BSDF_CHOICE:
+        return word_read(type, p, p->choices, text, field, err);
+    case BSDF_FLAG:
+        return word_read(type, p, flag, text, field, err);
+    case BSDF_STRING:
+        free(*(char **)field);
+        *(char **)field = strdup(text);
+        return *(char **)field || err_set(err, "out of memory");
+    }
+    return false;
+}
+
+static void value_unset(const struct bsdf_param *p, void *field)
+{
+    switch (p->kind) {
+    case BSDF_NUMBER:
+        *(double *)field = NAN;
+        break;
+    case BSDF_SPECTRUM:
+        *(struct spectrum *)field = spectrum_of(BANDS_MAX, NAN);
+        break;
+    case BSDF_CHOICE:
+    case BSDF_FLAG:
+        *(int *)field = -1;
+        break;
+    case BSDF_STRING:
+        break; /* NULL already */
+    }
+}
+
+static bool settings_read(struct bsdf *b, const char *settings, struct err *err)
+{
+    const struct bsdf_type *type = b->type;
+    const char *keys[WORDS_MAX + 1] = { NULL };
+    bool given[WORDS_MAX] = { false };
+    int n = 0;
+    for (const struct bsdf_param *p = type->params; p->key; p++) {
+        void *field = (char *)b->state + p->offset;
+        assert(n < WORDS_MAX);
+        keys[n++] = p->key;
+        value_unset(p, field);
+        if (p->def && !value_read(type, p, p->def, b->bands.count, field, err))
+            return false;
+    }
+    struct setting *s = malloc(sizeof *s);
+    bool ok = s || err_set(err, "out of memory");
+    for (const char *at = settings; ok && *at;) {
+        ok = setting_read(&at, s, b->spec, err);
+        if (!ok)
+            break;
+        int i = 0;
+        while (i < n && strcmp(keys[i], s->key) != 0)
+            i++;
+        if (i == n)
+            ok = unknown(type->name, s->key, keys, err);
+        else if (given[i])
+            ok = err_set(err, "%s: %s is given twice", type->name, s->key);
+        else
+            ok = value_read(type, &type->params[i], s->value, b->bands.count,
+                            (char *)b->state + type->params[i].offset, err);
+        if (ok)
+            given[i] = true;
+    }
+    free(s);
+    return ok && (!type->init || type->init(b->state, &b->bands, err));
+}
+
+/* spec is what to remember, settings a part of it. */
+static struct bsdf *make(const struct bsdf_type *type, const char *spec,
+                         const char *settings, const struct bands *bands,
+                         struct err *err)
+{
+    assert(bands->count >= 1 && bands->count <= BANDS_MAX);
+    struct bsdf *b = calloc(1, sizeof *b);
+    if (b) {
+        b->type = type;
+        b->bands = *bands;
+        b->spec = strdup(spec);
+        b->state = calloc(1, type->size ? type->size : 1);
+    }
+    if (!b || !b->spec || !b->state) {
+        err_set(err, "out of memory");
+        goto fail;
+    }
+    if (settings_read(b, settings, err))
+        return b;
+fail:
+    bsdf_free(b);
+    return NULL;
+}
+
+struct bsdf *bsdf_new(const char *spec, const struct bands *bands,
+                      struct err *err)
+{
+    const char *names[WORDS_MAX + 1] = { NULL };
+    char name[NAME_MAX_LENGTH];
+    size_t n = 0;
+    while (name_char(spec[n]))
+        n++;
+    if (n == 0 || n >= sizeof name || (spec[n] != ':' && spec[n] != '\0')) {
+        err_set(err, "spec \"%.200s\": expected name or name:key=value,...",
+                spec);
+        return NULL;
+    }
+    memcpy(name, spec, n);
+    name[n] = '\0';
+    if (spec[n] == ':' && spec[n + 1] == '\0') {
+        err_set(err, "spec \"%.200s\": expected key=value after the colon",
+                spec);
+        return NULL;
+    }
+    for (int i = 0; bsdf_types[i]; i++) {
+        assert(i < WORDS_MAX);
+        names[i] = bsdf_types[i]->name;
+        if (strcmp(name, names[i]) == 0)
+            return make(bsdf_types[i], spec, spec + n + (spec[n] == ':'), bands,
+                        err);
+    }
+    unknown("model", name, names, err);
+    return NULL;
+}
+
+struct bsdf *bsdf_new_of(const struct bsdf_type *type, const char *settings,
+                         const struct bands *bands, struct err *err)
+{
+    const size_t size = strlen(type->name) + strlen(settings) + 2;
+    char *spec = malloc(size);
+    if (!spec) {
+        err_set(err, "out of memory");
+        return NULL;
+    }
+    snprintf(spec, size, "%s%s%s", type->name, *settings ? ":" : "", settings);
+    struct bsdf *b = make(type, spec, settings, bands, err);
+    free(spec);
+    return b;
+}
+
+void bsdf_free(struct bsdf *b)
+{
+    if (!b)
+        return;
+    if (b->state) {
+        if (b->type->clear)
+            b->type->clear(b->state);
+        for (const struct bsdf_param *p = b->type->params; p->key; p++)
+            if (p->kind == BSDF_STRING)
+                free(*(char **)((char *)b->state + p->offset));
+    }
+    free(b->state);
+    free(b->spec);
+    free(b);
+}
+
+const struct bsdf_type *bsdf_type(const struct bsdf *b)
+{
+    return b->type;
+}
+
+const struct bands *bsdf_bands(const struct bsdf *b)
+{
+    return &b->bands;
+}
+
+const char *bsdf_spec(const struct bsdf *b)
+{
+    return b->spec;
+}
+
+struct bsdf_claims bsdf_claims(const struct bsdf *b)
+{
+    return b->type->claims(b->state, &b->bands);
+}
+
+struct spectrum bsdf_eval(const struct bsdf *b, struct vec3 wo, struct vec3 wi)
+{
+    return b->type->eval(b->state, wo, wi);
+}
+
+double bsdf_pdf(const struct bsdf *b, struct vec3 wo, struct vec3 wi)
+{
+    return b->type->pdf(b->state, wo, wi);
+}
+
+struct bsdf_sample bsdf_sample(const struct bsdf *b, struct vec3 wo,
+                               struct vec3 u)
+{
+    return b->type->sample(b->state, wo, u);
+}
+
+void bsdf_eval_many(const struct bsdf *b, size_t n, struct dirs wo,
+                    struct dirs wi, struct spectrum *f)
+{
+    if (b->type->eval_many) {
+        b->type->eval_many(b->state, n, wo, wi, f);
+        return;
+    }
+    for (size_t i = 0; i < n; i++)
+        f[i] = b->type->eval(b->state, dirs_at(wo, i), dirs_at(wi, i));
+}
+
+void bsdf_pdf_many(const struct bsdf *b, size_t n, struct dirs wo,
+                   struct dirs wi, double *pdf)
+{
+    if (b->type->pdf_many) {
+        b->type->pdf_many(b->state, n, wo, wi, pdf);
+        return;
+    }
+    for (size_t i = 0; i < n; i++)
+        pdf[i] = b->type->pdf(b->state, dirs_at(wo, i), dirs_at(wi, i));
+}
+
+void bsdf_sample_many(const struct bsdf *b, size_t n, struct dirs wo,
+                      struct dirs u, struct bsdf_sample *sample)
+{
+    if (b->type->sample_many) {
+        b->type->sample_many(b->state, n, wo, u, sample);
+        return;
+    }
+    for (size_t i = 0; i < n; i++)
+        sample[i] = b->type->sample(b->state, dirs_at(wo, i), dirs_at(u, i));
+}
+
+bool bsdf_has_facets(const struct bsdf *b)
+{
+    return b->type->facet_d && b->type->facet_g1;
+}
+
+double bsdf_facet_d(const struct bsdf *b, struct vec3 m)
+{
+    return b->type->facet_d(b->state, m);
+}
+
+double bsdf_facet_g1(const struct bsdf *b, struct vec3 w)
+{
+    return b->type->facet_g1(b->state, w);
+}

@@ -1,0 +1,145 @@
+/* bsdf.h - what every scattering model does, and how to get one
+ *
+ * The conventions of the whole project:
+ *   frame    z is the surface normal; every direction is a unit vector.
+ *   wo, wi   outgoing (to the viewer) and incident (to the light), both
+ *            pointing away from the surface; wo is given, wi asked about
+ *            or sampled.
+ *   band     a vacuum wavelength [nm]; an instance is made for up to four,
+ *            see bands.h.
+ *   f        value of the BSDF [1/sr] in each band, without the cosine.
+ *   pdf      density of wi per solid angle [1/sr].
+ *
+ * A model is one constant bsdf_type.  A bsdf is an instance of one; it never
+ * changes once made, so threads may share it.
+ */
+#ifndef BSDF_BSDF_H
+#define BSDF_BSDF_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "bsdf/bands.h"
+#include "bsdf/err.h"
+#include "bsdf/vec.h"
+
+/** All zeros when the light is absorbed, or the draw refused. */
+struct bsdf_sample {
+    struct vec3 wi;
+    double pdf;             /* [1/sr]; a probability [1] where delta is set */
+    struct spectrum weight; /* f |wi.z| / pdf [1] */
+    bool delta;             /* one direction, where eval and pdf are 0 */
+};
+
+/** One setting of a model: the table parses specs, checks ranges, prints help.
+ * A value that is neither given nor has a default is NaN (number, spectrum),
+ * NULL (string) or -1 (choice, flag). */
+struct bsdf_param {
+    const char *key;
+    enum bsdf_param_kind {
+        BSDF_NUMBER,   /* double, in [min, max] */
+        BSDF_SPECTRUM, /* struct spectrum, each band in [min, max] */
+        BSDF_CHOICE,   /* int, the index into choices */
+        BSDF_FLAG,     /* int, 0 or 1, from "false" or "true" */
+        BSDF_STRING,   /* char *, owned by the instance */
+    } kind;
+    size_t offset;              /* of the field in the model's state */
+    const char *def;            /* as a user would write it, or NULL */
+    double min, max;            /* of numbers and spectra */
+    const char *const *choices; /* of a choice; the last is NULL */
+    const char *about;          /* one line, with the unit */
+};
+
+enum bsdf_lobes {
+    BSDF_DIFFUSE_REFLECTION = 1,
+    BSDF_GLOSSY_REFLECTION = 2,
+    BSDF_DELTA_REFLECTION = 4,
+    BSDF_DIFFUSE_TRANSMISSION = 8,
+    BSDF_GLOSSY_TRANSMISSION = 16,
+    BSDF_DELTA_TRANSMISSION = 32,
+    BSDF_REFLECTION = 1 | 2 | 4,
+    BSDF_TRANSMISSION = 8 | 16 | 32,
+    BSDF_DELTA = 4 | 32,
+};
+
+/** What a model says of itself; the checks hold it to that. */
+struct bsdf_claims {
+    unsigned lobes;  /* of enum bsdf_lobes */
+    bool lossless;   /* the albedo is 1 for every wo and band */
+    bool reciprocal; /* f(wo, wi) = f(wi, wo), in radiance divided by n^2 */
+    double eta;      /* index of the lower side over that of the upper */
+};
+
+struct bsdf_type {
+    const char *name; /* "roughconductor" in "roughconductor:alpha=0.2" */
+    const char *about;
+    const struct bsdf_param *params; /* its settings; the last has no key */
+    size_t size;                     /* of the state that they fill */
+    struct bsdf_claims (*claims)(const void *state, const struct bands *bands);
+
+    struct spectrum (*eval)(const void *state, struct vec3 wo, struct vec3 wi);
+    double (*pdf)(const void *state, struct vec3 wo, struct vec3 wi);
+    struct bsdf_sample (*sample)(const void *state, struct vec3 wo,
+                                 struct vec3 u); /* u uniform in [0, 1)^3 */
+
+    /* Optional: NULL is the common case. */
+    bool (*init)(void *state, const struct bands *bands, struct err *err);
+    void (*clear)(void *state); /* what init allocated; strings are freed */
+
+    /* A microfacet model shows its facets: D(m) [1/sr] and Smith's G1(w). */
+    double (*facet_d)(const void *state, struct vec3 m);
+    double (*facet_g1)(const void *state, struct vec3 w);
+
+    /* Many at once, bit for bit what the one-by-one calls give. */
+    void (*eval_many)(const void *state, size_t n, struct dirs wo,
+                      struct dirs wi, struct spectrum *f);
+    void (*pdf_many)(const void *state, size_t n, struct dirs wo,
+                     struct dirs wi, double *pdf);
+    void (*sample_many)(const void *state, size_t n, struct dirs wo,
+                        struct dirs u, struct bsdf_sample *sample);
+};
+
+/** The models that specs can name; the last is NULL.  See types.c. */
+extern const struct bsdf_type *const bsdf_types[];
+
+struct bsdf;
+
+/** Makes what a spec describes: "name" or "name:key=value,key=a/b/c", where a
+ * value may be in single quotes ('' is a quote inside) and a spectrum is one
+ * value or one a band.  NULL and the reason if it cannot be made.  Owned by
+ * the caller. */
+struct bsdf *bsdf_new(const char *spec, const struct bands *bands,
+                      struct err *err);
+
+/** The same for a type of the caller's, with the settings alone ("" or
+ * "key=value,..."). */
+struct bsdf *bsdf_new_of(const struct bsdf_type *type, const char *settings,
+                         const struct bands *bands, struct err *err);
+
+void bsdf_free(struct bsdf *b); /* NULL is fine */
+
+const struct bsdf_type *bsdf_type(const struct bsdf *b);
+const struct bands *bsdf_bands(const struct bsdf *b);
+const char *bsdf_spec(const struct bsdf *b); /* as given */
+struct bsdf_claims bsdf_claims(const struct bsdf *b);
+
+struct spectrum bsdf_eval(const struct bsdf *b, struct vec3 wo, struct vec3 wi);
+double bsdf_pdf(const struct bsdf *b, struct vec3 wo, struct vec3 wi);
+struct bsdf_sample bsdf_sample(const struct bsdf *b, struct vec3 wo,
+                               struct vec3 u);
+
+/** n at once; the arrays are the caller's, of n elements each. */
+void bsdf_eval_many(const struct bsdf *b, size_t n, struct dirs wo,
+                    struct dirs wi, struct spectrum *f);
+void bsdf_pdf_many(const struct bsdf *b, size_t n, struct dirs wo,
+                   struct dirs wi, double *pdf);
+void bsdf_sample_many(const struct bsdf *b, size_t n, struct dirs wo,
+                      struct dirs u, struct bsdf_sample *sample);
+
+/** Whether the model shows its facets, and what they are: D(m) [1/sr], and
+ * the share G1(w) of the facets facing w that w sees. */
+bool bsdf_has_facets(const struct bsdf *b);
+double bsdf_facet_d(const struct bsdf *b, struct vec3 m);
+double bsdf_facet_g1(const struct bsdf *b, struct vec3 w);
+
+#endif
