@@ -1,0 +1,101 @@
+/* check_delta.c - single directions: which, how often, with what weight
+ *
+ * A delta sample goes in the mirror direction or, where transmission is
+ * claimed, along the refracted one of claims.eta; every sample of it says the
+ * same pdf and weight, and it is drawn as often as its pdf says (binomial, two
+ * sides).  value in sigma; what needs no statistics fails outright.
+ */
+#include "validate/checks.h"
+
+#include <stdio.h>
+
+#include "validate/pvalue.h"
+
+/* The mirror direction, or the refracted one; false beyond the critical
+ * angle.  Snell: sin_t = sin_o n_o / n_t. */
+static bool expected(const struct subject *s, bool refracted, struct vec3 *wi)
+{
+    const struct vec3 wo = s->wo;
+    const double eta = bsdf_claims(s->bsdf).eta;
+    const double ratio = wo.z > 0 ? 1 / eta : eta;
+    const double sin2 = (wo.x * wo.x + wo.y * wo.y) * ratio * ratio;
+    *wi = (struct vec3){ -wo.x, -wo.y, wo.z };
+    if (!refracted)
+        return true;
+    *wi = (struct vec3){ -wo.x * ratio, -wo.y * ratio,
+                         copysign(sqrt(fmax(1 - sin2, 0)), -wo.z) };
+    return sin2 < 1;
+}
+
+static bool fault(struct verdict *v, const struct delta *d, const char *what,
+                  double value)
+{
+    v->passed = false;
+    v->value = value;
+    v->limit = 0;
+    v->p = NAN;
+    if (d) {
+        v->has_wi = true;
+        v->wi = d->wi;
+    }
+    snprintf(v->note, sizeof v->note, "%s (%g)", what, value);
+    return false;
+}
+
+static bool delta_judge(const struct subject *s, const struct delta *d,
+                        unsigned lobes, double *p, struct verdict *v)
+{
+    /* Directions are exact to a few roundings. */
+    const double close = 1e-14;
+    const bool refracted = d->wi.z * s->wo.z < 0;
+    struct vec3 right;
+    const bool exists = expected(s, refracted, &right);
+    const double off = vec3_length(vec3_add(d->wi, vec3_scale(-1, right)));
+    if (!(lobes &
+          (refracted ? BSDF_DELTA_TRANSMISSION : BSDF_DELTA_REFLECTION)))
+        return fault(v, d, "a delta direction on a side without one", 1);
+    if (!exists || !(off <= close))
+        return fault(v, d, "the direction is off by", off);
+    if (!(d->spread <= close))
+        return fault(v, d, "samples of one direction differ by", d->spread);
+    if (!(d->pdf > 0 && d->pdf <= 1))
+        return fault(v, d, "the probability is outside (0, 1]", d->pdf);
+    *p = pvalue_binomial(d->count, s->survey.samples,
+                         (struct estimate){ d->pdf, 0 });
+    return true;
+}
+
+static void run(const struct subject *s, struct verdict *v)
+{
+    const struct survey *survey = &s->survey;
+    const unsigned lobes = bsdf_claims(s->bsdf).lobes;
+    if (!(lobes & BSDF_DELTA) && survey->deltas == 0) {
+        v->applies = false;
+        snprintf(v->note, sizeof v->note, "no delta lobe");
+        return;
+    }
+    double p[DELTAS_MAX];
+    v->unit = "sigma";
+    if (survey->delta_others > 0) {
+        fault(v, NULL, "more delta directions than a lobe each",
+              (double)survey->delta_others);
+        return;
+    }
+    if ((lobes & BSDF_DELTA_REFLECTION) && survey->deltas == 0) {
+        fault(v, NULL, "the claimed delta reflection was never drawn", 1);
+        return;
+    }
+    for (int k = 0; k < survey->deltas; k++)
+        if (!delta_judge(s, &survey->delta[k], lobes, &p[k], v))
+            return;
+    v->p = pvalue_best(p, survey->deltas);
+    snprintf(v->note, sizeof v->note, "%d direction%s, the first %llu times",
+             survey->deltas, survey->deltas == 1 ? "" : "s",
+             (unsigned long long)(survey->deltas ? survey->delta[0].count : 0));
+}
+
+const struct check check_delta = {
+    .name = "delta",
+    .about = "delta lobes: exact direction, one weight, the right frequency",
+    .run = run,
+};

@@ -1,0 +1,46 @@
+/* check_energy.c - no more light out than in
+ *
+ * The albedo, the integral of f |cos| over wi, by quadrature: at most 1 in
+ * every band.  An error above 1e-6 leaves it undecided, which fails.  A model
+ * that claims to be lossless must reach 1 within 1e-3 as well.
+ */
+#include "validate/checks.h"
+
+#include <stdio.h>
+
+static const double error_limit = 1e-6, loss_limit = 1e-3;
+
+static void run(const struct subject *s, struct verdict *v)
+{
+    struct estimate albedo[BANDS_MAX];
+    subject_albedo(s, albedo);
+    const int bands = bsdf_bands(s->bsdf)->count;
+    double least = INFINITY;
+    int used = snprintf(v->note, sizeof v->note, "albedo");
+    v->value = 0;
+    v->limit = 1;
+    for (int b = 0; b < bands; b++) {
+        if (!(albedo[b].value <= v->value)) /* a NaN is kept */
+            v->value = albedo[b].value;
+        v->error = fmax(v->error, albedo[b].error);
+        least = fmin(least, albedo[b].value);
+        used += snprintf(v->note + used, sizeof v->note - (size_t)used,
+                         "%s%.6f", b ? "/" : " ", albedo[b].value);
+    }
+    v->passed = v->error <= error_limit;
+    if (!v->passed) {
+        snprintf(v->note + used, sizeof v->note - (size_t)used,
+                 ", undecided: error above %g", error_limit);
+    } else if (bsdf_claims(s->bsdf).lossless && v->value - v->error <= 1 &&
+               !(least + v->error >= 1 - loss_limit)) {
+        v->passed = false;
+        snprintf(v->note + used, sizeof v->note - (size_t)used,
+                 ", but lossless is claimed");
+    }
+}
+
+const struct check check_energy = {
+    .name = "energy",
+    .about = "the albedo is at most 1, or is 1 where lossless is claimed",
+    .run = run,
+};

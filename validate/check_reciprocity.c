@@ -1,0 +1,89 @@
+/* check_reciprocity.c - light may go either way
+ *
+ *   f(wo, wi) / n_o^2 = f(wi, wo) / n_i^2
+ *
+ * with the index on the side that a direction is on; relative to the larger
+ * side, within 1e-10 and what rounding explains.  Pairs of wo with a grid, with
+ * random directions, and with directions that the model samples.
+ *
+ * B. Walter et al., Microfacet Models for Refraction through Rough Surfaces,
+ * EGSR 2007, sec. 3; E. Veach, Robust Monte Carlo Methods for Light Transport
+ * Simulation, 1997, eq. 5.14.
+ */
+#include "validate/checks.h"
+
+#include <stdio.h>
+
+static void pair(const struct subject *s, struct verdict *v, struct vec3 wi)
+{
+    const double eta = bsdf_claims(s->bsdf).eta;
+    const double n_o = s->wo.z < 0 ? eta : 1, n_i = wi.z < 0 ? eta : 1;
+    const struct spectrum there = bsdf_eval(s->bsdf, s->wo, wi);
+    const struct spectrum back = bsdf_eval(s->bsdf, wi, s->wo);
+    const int bands = bsdf_bands(s->bsdf)->count;
+    for (int b = 0; b < bands; b++) {
+        const double x = there.band[b] / (n_o * n_o);
+        const double y = back.band[b] / (n_i * n_i);
+        const double larger = fmax(x, y);
+        /* Denormal numbers have no digits to compare. */
+        if (!(larger > 1e-290) && !isnan(x + y))
+            continue;
+        const double off = fabs(x - y) / larger;
+        const double limit = 1e-10 + 2 * subject_rounding(s, wi, false);
+        if (!(off / limit > v->value / v->limit) && !isnan(off))
+            continue;
+        if (isnan(v->value))
+            return;
+        v->value = off;
+        v->limit = limit;
+        v->has_wi = true;
+        v->wi = wi;
+        int used = snprintf(v->note, sizeof v->note, "f there / f back =");
+        for (int c = 0; c < bands; c++)
+            used += snprintf(v->note + used, sizeof v->note - (size_t)used,
+                             "%s%.4f", c ? "/" : " ",
+                             there.band[c] * n_i * n_i /
+                                 (back.band[c] * n_o * n_o));
+    }
+}
+
+static void run(const struct subject *s, struct verdict *v)
+{
+    const struct bsdf_claims claims = bsdf_claims(s->bsdf);
+    if (!claims.reciprocal || !(claims.lobes & ~(unsigned)BSDF_DELTA)) {
+        v->applies = false;
+        snprintf(v->note, sizeof v->note, "%s",
+                 claims.reciprocal ? "only delta lobes"
+                                   : "declared not reciprocal");
+        return;
+    }
+    static const double theta_deg[] = { 0,    5,  13, 30,   45,   60,
+                                        72.5, 80, 85, 88.5, 89.5, 89.9 };
+    enum { THETAS = sizeof theta_deg / sizeof *theta_deg, TURNS = 8 };
+    const bool below = claims.lobes & BSDF_TRANSMISSION;
+    v->unit = "relative";
+    v->limit = 1e-10;
+    for (int i = 0; i < THETAS * TURNS * (1 + below); i++) {
+        struct vec3 wi = dir_from_degrees(theta_deg[i % THETAS],
+                                          360. / TURNS * (i / THETAS) + 7);
+        if (i >= THETAS * TURNS)
+            wi.z = -wi.z;
+        pair(s, v, wi);
+    }
+    const struct rng rng = subject_rng(s, STREAM_PAIRS);
+    for (uint64_t i = 0; i < 1024; i++) {
+        const struct vec3 u = rng_uniform(rng, i);
+        const double z = below ? 2 * u.x - 1 : u.x;
+        const double r = sqrt((1 - z) * (1 + z)), phi = 2 * PI * u.y;
+        pair(s, v, (struct vec3){ r * cos(phi), r * sin(phi), z });
+        const struct bsdf_sample a = bsdf_sample(s->bsdf, s->wo, u);
+        if (a.pdf > 0 && !a.delta)
+            pair(s, v, a.wi);
+    }
+}
+
+const struct check check_reciprocity = {
+    .name = "reciprocity",
+    .about = "f(wo, wi) = f(wi, wo), divided by the squared indices",
+    .run = run,
+};

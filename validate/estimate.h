@@ -1,0 +1,14 @@
+/* estimate.h - a computed number travels with how far off it may be */
+#ifndef VALIDATE_ESTIMATE_H
+#define VALIDATE_ESTIMATE_H
+
+struct estimate {
+    double value, error; /* |value - truth| <= error, as far as is known */
+};
+
+static inline struct estimate estimate_add(struct estimate a, struct estimate b)
+{
+    return (struct estimate){ a.value + b.value, a.error + b.error };
+}
+
+#endif

@@ -1,0 +1,198 @@
+/* main.c - bsdf-validate: is this scattering model sound, and why not */
+#include <argp.h>
+#include <gsl/gsl_errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "bsdf/cli.h"
+#include "validate/report.h"
+#include "validate/run.h"
+
+enum {
+    OPT_ALL = 1,
+    OPT_JSON,
+    OPT_SEED,
+    OPT_SAMPLES,
+    OPT_SIGNIFICANCE,
+    OPT_WO,
+    OPT_THREADS,
+    OPT_NM,
+    OPT_IOR_PATH,
+    OPT_LIST
+};
+enum { WO_MAX = 256, SPECS_MAX = 256 };
+
+struct request {
+    struct plan plan;
+    struct bands bands;
+    struct vec3 wo[WO_MAX];
+    size_t wos;
+    const char *spec[SPECS_MAX];
+    size_t specs;
+    const char *json;
+    bool verbose;
+};
+
+const char *argp_program_version = "bsdf-validate " BSDF_VERSION;
+static const char about[] =
+    "Says whether scattering models are sound, and why not."
+    "\vA SPEC is name or name:key=value,...; `bsdf-info list` names the models "
+    "and their keys.  Exit status: 0 sound, 1 a check failed, 2 the request "
+    "was wrong.";
+
+static const struct argp_option options[] = {
+    { "all", OPT_ALL, 0, 0,
+      "every model of the library, 135 and more "
+      "configurations",
+      0 },
+    { "wo", OPT_WO, "THETA,PHI", 0,
+      "outgoing direction [deg], may be "
+      "repeated; 0, 30, 75, 89, 89.9 if none",
+      0 },
+    { "samples", OPT_SAMPLES, "N", 0,
+      "drawn for each model and direction, "
+      "1000 to 1e9; 1e6",
+      0 },
+    { "seed", OPT_SEED, "S", 0, "of the random numbers; 1", 0 },
+    { "significance", OPT_SIGNIFICANCE, "A", 0,
+      "chance that a run of sound "
+      "models fails; 1e-6",
+      0 },
+    { "threads", OPT_THREADS, "N", 0,
+      "as many as there are, if not given; "
+      "the verdicts do not depend on it",
+      0 },
+    { "nm", OPT_NM, "A,B,C", 0,
+      "the bands, one to four wavelengths; "
+      "614,549,466",
+      0 },
+    { "ior-path", OPT_IOR_PATH, "DIR", 0,
+      "a refractiveindex.info database "
+      "(or BSDF_IOR_PATH)",
+      0 },
+    { "json", OPT_JSON, "FILE", 0, "write the whole run there as well", 0 },
+    { "verbose", 'v', 0, 0, "every direction, not just the worst", 0 },
+    { "list", OPT_LIST, 0, 0, "name the checks and stop", 0 },
+    { 0 },
+};
+
+static error_t option(int key, char *arg, struct argp_state *state)
+{
+    struct request *r = state->input;
+    struct err err;
+    uint64_t n;
+    bool ok = true;
+    switch (key) {
+    case OPT_ALL:
+        for (int i = 0; run_all_specs[i] && r->specs < SPECS_MAX; i++)
+            r->spec[r->specs++] = run_all_specs[i];
+        break;
+    case OPT_WO:
+        if (r->wos == WO_MAX)
+            ok = err_set(&err, "--wo: at most %d directions", WO_MAX);
+        else
+            ok = cli_direction(&r->wo[r->wos], arg, &err);
+        r->wos++;
+        break;
+    case OPT_SAMPLES:
+        ok = cli_count(&r->plan.samples, "--samples", arg, 1000, 1000000000,
+                       &err);
+        break;
+    case OPT_SEED:
+        ok = cli_count(&r->plan.seed, "--seed", arg, 0, INT64_MAX, &err);
+        break;
+    case OPT_SIGNIFICANCE:
+        ok = cli_number(&r->plan.significance, "--significance", arg, 1e-100,
+                        0.5, &err);
+        break;
+    case OPT_THREADS:
+        ok = cli_count(&n, "--threads", arg, 1, 1024, &err);
+        r->plan.threads = ok ? (int)n : 0;
+        break;
+    case OPT_NM:
+        ok = bands_parse(&r->bands, arg, &err);
+        break;
+    case OPT_IOR_PATH:
+        ok = cli_ior_path(arg, &err);
+        break;
+    case OPT_JSON:
+        r->json = arg;
+        break;
+    case 'v':
+        r->verbose = true;
+        break;
+    case OPT_LIST:
+        for (int c = 0; checks[c]; c++)
+            printf("%-12s %s\n", checks[c]->name, checks[c]->about);
+        exit(EXIT_SOUND);
+    case ARGP_KEY_ARG:
+        if (r->specs == SPECS_MAX)
+            ok = err_set(&err, "at most %d specs", SPECS_MAX);
+        else
+            r->spec[r->specs++] = arg;
+        break;
+    case ARGP_KEY_END:
+        if (r->specs == 0)
+            ok = err_set(&err, "expected a SPEC, as in roughconductor:"
+                               "material=Ca,alpha=0.25, or --all");
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    if (!ok)
+        argp_failure(state, EXIT_REQUEST, 0, "%s", err.text);
+    return 0;
+}
+
+static void progress(void *context, size_t done, size_t of)
+{
+    (void)context;
+    fprintf(stderr, "\r%zu of %zu directions%s", done, of,
+            done == of ? "\r\033[K" : "");
+}
+
+int main(int argc, char **argv)
+{
+    static struct request r;
+    static struct bsdf *bsdf[SPECS_MAX];
+    struct err err;
+    struct run run;
+    int status = EXIT_REQUEST;
+    r.plan = plan_default;
+    r.bands = bands_default;
+    gsl_set_error_handler_off();
+    argp_err_exit_status = EXIT_REQUEST;
+    argp_parse(&(struct argp){ options, option, "SPEC...", about, 0, 0, 0 },
+               argc, argv, 0, NULL, &r);
+    if (r.wos == 0) {
+        run_directions(r.wo);
+        r.wos = RUN_DIRECTIONS;
+    }
+    for (size_t i = 0; i < r.specs; i++) {
+        bsdf[i] = bsdf_new(r.spec[i], &r.bands, &err);
+        if (!bsdf[i])
+            goto fail;
+    }
+    if (!run_checks(&run, &r.plan, (const struct bsdf *const *)bsdf, r.specs,
+                    r.wo, r.wos, isatty(2) ? progress : NULL, NULL, &err))
+        goto fail;
+    report_text(stdout, &run, r.verbose);
+    status = run.failed ? EXIT_UNSOUND : EXIT_SOUND;
+    if (r.json && !report_json(r.json, &run, &err)) {
+        fprintf(stderr, "bsdf-validate: %s\n", err.text);
+        status = EXIT_REQUEST;
+    }
+    run_clear(&run);
+    goto done;
+fail:
+    fprintf(stderr, "bsdf-validate: %s\n", err.text);
+done:
+    for (size_t i = 0; i < r.specs; i++)
+        bsdf_free(bsdf[i]);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fprintf(stderr, "bsdf-validate: standard output: write error\n");
+        status = EXIT_REQUEST;
+    }
+    return status;
+}

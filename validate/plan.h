@@ -1,0 +1,17 @@
+/* plan.h - what a run of the checks is asked to do */
+#ifndef VALIDATE_PLAN_H
+#define VALIDATE_PLAN_H
+
+#include <stdint.h>
+
+struct plan {
+    uint64_t seed;
+    uint64_t samples;    /* for each model and direction, 1000 to 1e9 */
+    double significance; /* of the whole run: the chance that anything sound
+                            is called unsound, in (0, 1) */
+    int threads;         /* 0: as many as there are */
+};
+
+extern const struct plan plan_default; /* 1, 10^6, 1e-6, 0 */
+
+#endif

@@ -1,0 +1,26 @@
+/* pvalue.h - probabilities of doing worse, by complementary functions
+ *
+ * A p-value below 1e-300 is given as 1e-300, so that it always has a sigma.
+ */
+#ifndef VALIDATE_PVALUE_H
+#define VALIDATE_PVALUE_H
+
+#include <stdint.h>
+
+#include "validate/estimate.h"
+
+/** P(X >= statistic) of chi-square; 1 without a degree of freedom. */
+double pvalue_chi_square(double statistic, long degrees);
+
+/** Two-sided, exact: k of n where each has the probability q, which is known
+ * up to its error; the error is read in favour of k.  A q below 0 even so
+ * (or above 1) is impossible whatever k is.  n below 2^32. */
+double pvalue_binomial(uint64_t k, uint64_t n, struct estimate q);
+
+/** The best of several p-values of one thing, for the whole (Bonferroni). */
+double pvalue_best(const double *p, int n);
+
+/** How many standard deviations a two-sided p is worth. */
+double pvalue_sigma(double p);
+
+#endif

@@ -1,0 +1,136 @@
+/* quadrature.c - adaptive Gauss-Legendre quadrature */
+#include "validate/quadrature.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+enum { ORDER = QUADRATURE_ORDER, DEPTH_MAX = 30 };
+
+/* Nodes and weights on [-1, 1], the roots of P6.  M. Abramowitz and I. Stegun,
+ * Handbook of Mathematical Functions, 1964, table 25.4. */
+static const double node[ORDER] = {
+    -0.932469514203152, -0.661209386466265, -0.238619186083197,
+    0.238619186083197,  0.661209386466265,  0.932469514203152,
+};
+static const double node_weight[ORDER] = {
+    0.171324492379170, 0.360761573048139, 0.467913934572691,
+    0.467913934572691, 0.360761573048139, 0.171324492379170,
+};
+
+struct job {
+    quadrature_fn *f;
+    const void *context;
+    int parts;
+    double tolerance;
+    long *budget;
+    struct estimate *out;
+};
+
+/* The rule on one rectangle, a value a part. */
+static void rule(struct job *j, struct rectangle r, double *value)
+{
+    double x[ORDER], y[ORDER], f[QUADRATURE_PARTS_MAX * ORDER * ORDER];
+    const double dx = (r.x1 - r.x0) / 2, dy = (r.y1 - r.y0) / 2;
+    for (int i = 0; i < ORDER; i++) {
+        x[i] = r.x0 + dx * (1 + node[i]);
+        y[i] = r.y0 + dy * (1 + node[i]);
+    }
+    j->f(j->context, x, y, f);
+    *j->budget -= ORDER * ORDER;
+    for (int part = 0, at = 0; part < j->parts; part++) {
+        value[part] = 0;
+        for (int i = 0; i < ORDER; i++) {
+            double row = 0;
+            for (int k = 0; k < ORDER; k++, at++)
+                row += node_weight[k] * f[at];
+            value[part] += dx * dy * node_weight[i] * row;
+        }
+    }
+}
+
+static void refine(struct job *j, struct rectangle r, const double *coarse,
+                   int depth)
+{
+    const double x = (r.x0 + r.x1) / 2, y = (r.y0 + r.y1) / 2;
+    const struct rectangle quarter[4] = {
+        { r.x0, x, r.y0, y },
+        { r.x0, x, y, r.y1 },
+        { x, r.x1, r.y0, y },
+        { x, r.x1, y, r.y1 },
+    };
+    double fine[4][QUADRATURE_PARTS_MAX];
+    for (int q = 0; q < 4; q++)
+        rule(j, quarter[q], fine[q]);
+
+    double sum[QUADRATURE_PARTS_MAX], off[QUADRATURE_PARTS_MAX];
+    bool agree = true;
+    for (int part = 0; part < j->parts; part++) {
+        sum[part] =
+            fine[0][part] + fine[1][part] + fine[2][part] + fine[3][part];
+        off[part] = fabs(sum[part] - coarse[part]);
+        agree &= off[part] <= j->tolerance;
+    }
+    if (agree || depth == DEPTH_MAX || *j->budget <= 0) {
+        for (int part = 0; part < j->parts; part++) {
+            j->out[part].value += sum[part];
+            j->out[part].error += off[part];
+        }
+        return;
+    }
+    for (int q = 0; q < 4; q++)
+        refine(j, quarter[q], fine[q], depth + 1);
+}
+
+void quadrature(quadrature_fn *f, const void *context, int parts,
+                struct rectangle r, double tolerance, long *budget,
+                struct estimate *out)
+{
+    struct job j = { f, context, parts, tolerance, budget, out };
+    double coarse[QUADRATURE_PARTS_MAX];
+    rule(&j, r, coarse);
+
+    /* On a graded mesh what a rectangle does not see its neighbours do: a
+     * thousandth of the tolerance need not be looked at more closely. */
+    bool negligible = true;
+    for (int part = 0; part < parts; part++)
+        negligible &= fabs(coarse[part]) <= tolerance * 1e-3;
+    if (!negligible) {
+        refine(&j, r, coarse, 0);
+        return;
+    }
+    for (int part = 0; part < parts; part++) {
+        out[part].value += coarse[part];
+        out[part].error += fabs(coarse[part]);
+    }
+}
+
+size_t mesh_grade(const double *edges, size_t n, double widest, double *graded,
+                  size_t max)
+{
+    size_t count = 0;
+    for (size_t i = 0; i + 1 < n; i++) {
+        double low = edges[i], high = edges[i + 1];
+        double left = i > 0 ? low - edges[i - 1] : widest;
+        double right = i + 2 < n ? edges[i + 2] - high : widest;
+        double from_right[128];
+        size_t rights = 0;
+        graded[count++] = low;
+        /* Room must remain for the edges that were given. */
+        while (high - low > fmin(2 * fmin(left, right), widest) &&
+               rights < 128 && count + rights + (n - 1 - i) < max) {
+            if (left <= right) {
+                left = fmin(2 * left, widest);
+                low += left;
+                graded[count++] = low;
+            } else {
+                right = fmin(2 * right, widest);
+                high -= right;
+                from_right[rights++] = high;
+            }
+        }
+        while (rights > 0)
+            graded[count++] = from_right[--rights];
+    }
+    graded[count++] = edges[n - 1];
+    return count;
+}

@@ -1,0 +1,42 @@
+/* quadrature.h - integrals over rectangles, with an error bound
+ *
+ * A rectangle is integrated by a 6 x 6 Gauss-Legendre rule, compared with the
+ * sum over its quarters, and split until the two agree; the finer value is
+ * taken and the difference is the bound.  A rule sees only what its nodes see:
+ * a mesh must be graded toward a peak, never laid over it, and have its edges
+ * where the integrand has kinks.
+ */
+#ifndef VALIDATE_QUADRATURE_H
+#define VALIDATE_QUADRATURE_H
+
+#include <stddef.h>
+
+#include "validate/estimate.h"
+
+enum { QUADRATURE_ORDER = 6, QUADRATURE_PARTS_MAX = 4 };
+
+struct rectangle {
+    double x0, x1, y0, y1;
+};
+
+/** Fills value[(part * ORDER + i) * ORDER + k] with the part-th integrand at
+ * (x[i], y[k]). */
+typedef void quadrature_fn(const void *context,
+                           const double x[QUADRATURE_ORDER],
+                           const double y[QUADRATURE_ORDER], double *value);
+
+/** Adds the integrals over a rectangle to out[0 .. parts-1]; parts at most
+ * QUADRATURE_PARTS_MAX.  A leaf is accepted where the two rules differ by at
+ * most the tolerance, or where the budget of evaluations, shared by many calls,
+ * is used up; either way the difference is in the error. */
+void quadrature(quadrature_fn *f, const void *context, int parts,
+                struct rectangle r, double tolerance, long *budget,
+                struct estimate *out);
+
+/** Cuts the intervals between n sorted edges so that none is wider than widest
+ * or more than twice as wide as the narrower one beside it was.  Writes at
+ * most max edges, the given ones among them, and returns how many; n <= max. */
+size_t mesh_grade(const double *edges, size_t n, double widest, double *graded,
+                  size_t max);
+
+#endif

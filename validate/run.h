@@ -1,0 +1,52 @@
+/* run.h - all checks on all subjects, and the decision over the whole
+ *
+ * A run has one significance.  Holm's procedure shares it among the p-values:
+ * the i-th smallest of m is held against significance / (m - i + 1), and the
+ * first that is not below its level, with all behind it, passes.
+ *
+ * S. Holm, A Simple Sequentially Rejective Multiple Test Procedure,
+ * Scandinavian Journal of Statistics 6(2), 1979.
+ */
+#ifndef VALIDATE_RUN_H
+#define VALIDATE_RUN_H
+
+#include <stddef.h>
+
+#include "validate/checks.h"
+
+struct result {
+    const struct bsdf *bsdf; /* borrowed */
+    struct vec3 wo;
+    struct verdict *verdict; /* one a check, in the order of `checks` */
+};
+
+struct run {
+    struct plan plan;
+    size_t results;
+    struct result *result;
+    size_t passed, failed, statistical; /* verdicts; those with a p */
+};
+
+/** Called by one thread at a time, after each subject. */
+typedef void run_progress(void *context, size_t done, size_t of);
+
+/** Checks every bsdf from every direction; progress may be NULL.  False when
+ * out of memory.  The bsdfs must outlive the run. */
+bool run_checks(struct run *run, const struct plan *plan,
+                const struct bsdf *const *bsdf, size_t bsdfs,
+                const struct vec3 *wo, size_t wos, run_progress *progress,
+                void *context, struct err *err);
+void run_clear(struct run *run);
+
+/** Decides n statistical verdicts: passed, value and limit in sigma. */
+void holm(struct verdict **verdict, size_t n, double significance);
+
+/** The specs of `--all`: every model over its roughnesses, distributions and
+ * ways of sampling.  The last is NULL. */
+extern const char *const run_all_specs[];
+
+/** theta 0, 30, 75, 89, 89.9 degrees at an azimuth without symmetry. */
+enum { RUN_DIRECTIONS = 5 };
+void run_directions(struct vec3 wo[RUN_DIRECTIONS]);
+
+#endif

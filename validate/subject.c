@@ -1,0 +1,264 @@
+/* subject.c - pilots, bins, masses, and the one pass of samples */
+#include "validate/subject.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "bsdf/frame.h"
+
+enum { PILOTS = 16384, BATCH = 256 };
+
+/* Leaves of this accuracy, some thousands of them, keep the whole within 1e-7;
+ * the bound that is carried along says how well it went. */
+static const double mass_tolerance = 1e-10;
+static const long mass_budget = 20000000;
+
+const struct plan plan_default = { .seed = 1,
+                                   .samples = 1000000,
+                                   .significance = 1e-6 };
+
+/* FNV-1a, 64 bits: G. Fowler, L. Noll and K.-P. Vo, 1991. */
+static uint64_t hash(uint64_t h, const void *data, size_t size)
+{
+    for (const unsigned char *p = data; size-- > 0; p++)
+        h = (h ^ *p) * 0x100000001b3;
+    return h;
+}
+
+struct rng subject_rng(const struct subject *s, enum stream purpose)
+{
+    const char *spec = bsdf_spec(s->bsdf);
+    const unsigned char tag = (unsigned char)purpose;
+    uint64_t h = hash(0xcbf29ce484222325, spec, strlen(spec));
+    h = hash(h, &s->wo, sizeof s->wo);
+    return (struct rng){ s->plan->seed, hash(h, &tag, 1) };
+}
+
+/* Draws n samples from index `from` on; n at most BATCH. */
+static void draw(const struct subject *s, struct rng rng, uint64_t from,
+                 size_t n, struct bsdf_sample *out)
+{
+    double wx[BATCH], wy[BATCH], wz[BATCH], x[BATCH], y[BATCH], z[BATCH];
+    for (size_t i = 0; i < n; i++) {
+        const struct vec3 u = rng_uniform(rng, from + i);
+        x[i] = u.x, y[i] = u.y, z[i] = u.z;
+        wx[i] = s->wo.x, wy[i] = s->wo.y, wz[i] = s->wo.z;
+    }
+    bsdf_sample_many(s->bsdf, n, (struct dirs){ wx, wy, wz },
+                     (struct dirs){ x, y, z }, out);
+}
+
+static bool refused(const struct bsdf_sample *a)
+{
+    return a->pdf == 0 && spectrum_is(a->weight, BANDS_MAX, 0);
+}
+
+static double difference(const struct delta *d, const struct bsdf_sample *a)
+{
+    const struct vec3 off = vec3_add(a->wi, vec3_scale(-1, d->wi));
+    double most = fmax(vec3_length(off), fabs(a->pdf - d->pdf));
+    for (int b = 0; b < BANDS_MAX; b++)
+        most = fmax(most, fabs(a->weight.band[b] - d->weight.band[b]));
+    return most;
+}
+
+/* A direction is another one from 1e-6 away. */
+static void delta_count(struct survey *v, const struct bsdf_sample *a)
+{
+    for (int k = 0; k < v->deltas; k++) {
+        struct delta *d = &v->delta[k];
+        if (vec3_length(vec3_add(a->wi, vec3_scale(-1, d->wi))) < 1e-6) {
+            d->count++;
+            d->spread = fmax(d->spread, difference(d, a));
+            return;
+        }
+    }
+    if (v->deltas == DELTAS_MAX) {
+        v->delta_others++;
+        return;
+    }
+    v->delta[v->deltas++] = (struct delta){
+        .wi = a->wi, .pdf = a->pdf, .weight = a->weight, .count = 1
+    };
+}
+
+static void survey_sample(struct subject *s)
+{
+    struct survey *v = &s->survey;
+    const struct rng rng = subject_rng(s, STREAM_SURVEY);
+    const size_t bins = partition_bins(v->partition);
+    struct bsdf_sample batch[BATCH];
+    v->samples = s->plan->samples;
+    for (uint64_t at = 0; at < v->samples; at += BATCH) {
+        const uint64_t left = v->samples - at;
+        const size_t n = left < BATCH ? (size_t)left : BATCH;
+        draw(s, rng, at, n, batch);
+        for (size_t i = 0; i < n; i++) {
+            if (refused(&batch[i])) {
+                v->refused++;
+            } else if (batch[i].delta) {
+                delta_count(v, &batch[i]);
+            } else {
+                const size_t bin = partition_bin(v->partition, batch[i].wi);
+                if (bin < bins)
+                    v->count[bin]++;
+                else
+                    v->stray++;
+            }
+        }
+    }
+}
+
+/* The same wo for n directions. */
+struct many {
+    const struct subject *s;
+    double x[BATCH], y[BATCH], z[BATCH];
+};
+
+static struct dirs many_wo(struct many *m, const struct subject *s, size_t n)
+{
+    m->s = s;
+    for (size_t i = 0; i < n; i++)
+        m->x[i] = s->wo.x, m->y[i] = s->wo.y, m->z[i] = s->wo.z;
+    return (struct dirs){ m->x, m->y, m->z };
+}
+
+static void pdf_at(const void *context, size_t n, struct dirs w, double *value)
+{
+    struct many m;
+    const struct subject *s = context;
+    bsdf_pdf_many(s->bsdf, n, many_wo(&m, s, n), w, value);
+}
+
+static void f_cos_at(const void *context, size_t n, struct dirs w,
+                     double *value)
+{
+    struct many m;
+    const struct subject *s = context;
+    struct spectrum f[BATCH];
+    bsdf_eval_many(s->bsdf, n, many_wo(&m, s, n), w, f);
+    const int bands = bsdf_bands(s->bsdf)->count;
+    for (int b = 0; b < bands; b++)
+        for (size_t i = 0; i < n; i++)
+            value[(size_t)b * n + i] = f[i].band[b] * fabs(w.z[i]);
+}
+
+bool subject_init(struct subject *s, const struct bsdf *b, struct vec3 wo,
+                  const struct plan *plan, struct err *err)
+{
+    *s = (struct subject){ .bsdf = b, .wo = wo, .plan = plan };
+    struct survey *v = &s->survey;
+    struct vec3 *pilot = malloc(PILOTS * sizeof *pilot);
+    struct bsdf_sample batch[BATCH];
+    size_t n = 0;
+    const struct rng rng = subject_rng(s, STREAM_PILOT);
+    for (uint64_t at = 0; pilot && at < PILOTS; at += BATCH) {
+        draw(s, rng, at, BATCH, batch);
+        for (size_t i = 0; i < BATCH; i++)
+            if (!refused(&batch[i]) && !batch[i].delta &&
+                vec3_dot(batch[i].wi, batch[i].wi) > 0.5)
+                pilot[n++] = batch[i].wi;
+    }
+    v->partition = pilot ? partition_new(pilot, n) : NULL;
+    free(pilot);
+    const size_t bins = v->partition ? partition_bins(v->partition) : 1;
+    v->mass = calloc(bins, sizeof *v->mass);
+    v->count = calloc(bins, sizeof *v->count);
+    if (!v->partition || !v->mass || !v->count) {
+        subject_clear(s);
+        return err_set(err, "out of memory");
+    }
+    partition_integrate(v->partition, pdf_at, s, 1, mass_tolerance, mass_budget,
+                        v->mass);
+    for (size_t i = 0; i < bins; i++)
+        v->total = estimate_add(v->total, v->mass[i]);
+    survey_sample(s);
+    return true;
+}
+
+void subject_clear(struct subject *s)
+{
+    partition_free(s->survey.partition);
+    free(s->survey.mass);
+    free(s->survey.count);
+    s->survey = (struct survey){ 0 };
+}
+
+struct estimate survey_refusal(const struct survey *v)
+{
+    struct estimate left = { 1 - v->total.value, v->total.error };
+    for (int k = 0; k < v->deltas; k++)
+        left.value -= v->delta[k].pdf;
+    return left;
+}
+
+double subject_rounding(const struct subject *s, struct vec3 wi, bool of_pdf)
+{
+    const double step = 0x1p-40;
+    const struct frame frame = frame_about(wi);
+    const struct vec3 at[3] = {
+        wi,
+        vec3_unit(vec3_add(wi, vec3_scale(step, frame.s))),
+        vec3_unit(vec3_add(wi, vec3_scale(step, frame.t))),
+    };
+    double value[3], most = 0;
+    for (int i = 0; i < 3; i++) {
+        if (of_pdf) {
+            value[i] = bsdf_pdf(s->bsdf, s->wo, at[i]);
+            continue;
+        }
+        const struct spectrum f = bsdf_eval(s->bsdf, s->wo, at[i]);
+        value[i] = 0;
+        for (int b = 0; b < BANDS_MAX; b++)
+            value[i] = fmax(value[i], f.band[b]);
+    }
+    for (int i = 1; i < 3; i++)
+        most = fmax(most, fabs(value[i] / value[0] - 1));
+    return fmin(16 * 0x1p-52 / step * most, 0.5);
+}
+
+/* The median of the rounding over drawn directions, as f is rounded anew at
+ * every node. */
+static double typical_rounding(const struct subject *s)
+{
+    enum { DRAWS = 65 };
+    struct bsdf_sample sample[DRAWS];
+    double off[DRAWS];
+    size_t n = 0;
+    draw(s, subject_rng(s, STREAM_PAIRS), 0, DRAWS, sample);
+    for (size_t i = 0; i < DRAWS; i++) {
+        if (refused(&sample[i]) || sample[i].delta)
+            continue;
+        const double r = subject_rounding(s, sample[i].wi, false);
+        size_t at = n++;
+        for (; at > 0 && off[at - 1] > r; at--)
+            off[at] = off[at - 1];
+        off[at] = r;
+    }
+    return n ? off[n / 2] : 0;
+}
+
+void subject_albedo(const struct subject *s, struct estimate albedo[BANDS_MAX])
+{
+    const struct survey *v = &s->survey;
+    const int bands = bsdf_bands(s->bsdf)->count;
+    const size_t bins = partition_bins(v->partition);
+    const double rounding = 0x1p-48 + typical_rounding(s);
+    struct estimate *part = malloc(bins * (size_t)bands * sizeof *part);
+    for (int b = 0; b < BANDS_MAX; b++)
+        albedo[b] = (struct estimate){ 0, part ? 0 : INFINITY };
+    if (!part)
+        return;
+    partition_integrate(v->partition, f_cos_at, s, bands, mass_tolerance,
+                        mass_budget, part);
+    for (size_t i = 0; i < bins; i++)
+        for (int b = 0; b < bands; b++)
+            albedo[b] =
+                estimate_add(albedo[b], part[i * (size_t)bands + (size_t)b]);
+    free(part);
+    for (int b = 0; b < bands; b++) {
+        albedo[b].error += rounding * fabs(albedo[b].value);
+        for (int k = 0; k < v->deltas; k++)
+            albedo[b].value += v->delta[k].pdf * v->delta[k].weight.band[b];
+    }
+}
