@@ -1,0 +1,258 @@
+# Makefile - build, set up, try and test; `make help` lists the targets
+#
+# Everything made goes under build/, the programs into build/bin/.  The
+# variables below can be given on the command line, as in
+# `make test config=sanitize` or `make CC=clang`.
+
+SHELL := /bin/sh
+.DELETE_ON_ERROR:
+.DEFAULT_GOAL := all
+
+config ?= release
+JOBS   ?= $(shell nproc 2>/dev/null || echo 2)
+
+# release is the default and lives in build/ itself.
+ifeq ($(config),release)
+B     := build
+FLAGS := -O2 -g
+else ifeq ($(config),debug)
+B     := build/debug
+FLAGS := -O0 -g3
+else ifeq ($(config),sanitize)
+B     := build/sanitize
+FLAGS := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined \
+         -fno-sanitize-recover=all
+else
+$(error config=$(config): expected release, debug or sanitize)
+endif
+
+CFLAGS   ?=
+CPPFLAGS ?=
+LDFLAGS  ?=
+WARN     := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes \
+            -Wmissing-prototypes -Wvla
+# c17 keeps multiply and add apart, so that the scalar and the batch path agree
+# to the last bit; it hides POSIX, which _GNU_SOURCE brings back.
+LANGUAGE := -std=c17 -D_GNU_SOURCE -fno-math-errno -fopenmp -I. \
+            -DBSDF_DATA_DIR='"$(CURDIR)/data"'
+COMPILE   = $(CC) $(LANGUAGE) $(FLAGS) $(WARN) $(CPPFLAGS) $(CFLAGS)
+LIBS     := -lgsl -lgslcblas -lyaml -ljansson -lm
+
+# `make V=1` shows the commands.
+SAY := @printf '  %-5s %s\n'
+Q   := @
+ifdef V
+SAY := @:
+Q   :=
+endif
+
+# -- what there is to build ---------------------------------------------------
+
+FOLDERS  := $(patsubst %/,%,$(wildcard bsdf/ validate/ plots/ integrator/))
+SOURCES  := $(foreach d,$(FOLDERS),$(wildcard $(d)/*.c))
+HEADERS  := $(foreach d,$(FOLDERS) tests,$(wildcard $(d)/*.h))
+TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
+HELPERS  := $(filter-out $(TESTS:%=tests/%.c),$(wildcard tests/*.c))
+
+objects   = $(patsubst %.c,$(B)/obj/%.o,$(1))
+libof     = $(B)/lib$(1).a
+# Each library before those that it uses.
+LIBRARIES := $(foreach d,integrator plots validate bsdf,\
+               $(if $(filter $(d),$(FOLDERS)),$(call libof,$(d))))
+
+PROGRAM_bsdf       := bsdf-info
+PROGRAM_validate   := bsdf-validate
+PROGRAM_plots      := bsdf-plot
+PROGRAM_integrator := bsdf-render
+MAINS     := $(filter %/main.c,$(SOURCES))
+PROGRAMS  := $(foreach m,$(MAINS),$(B)/bin/$(PROGRAM_$(m:/main.c=)))
+
+.PHONY: all
+all: tools-found $(PROGRAMS) ## build the programs into build/bin/ (the default)
+
+define library
+$(call libof,$(1)): $(call objects,$(filter-out $(1)/main.c,$(filter $(1)/%,$(SOURCES))))
+	$$(SAY) AR $$@
+	$$(Q)rm -f $$@ && ar rcs $$@ $$^
+$(B)/bin/$(PROGRAM_$(1)): $(B)/obj/$(1)/main.o $(LIBRARIES)
+	@mkdir -p $$(@D)
+	$$(SAY) LINK $$@
+	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(LIBS)
+endef
+$(foreach d,$(FOLDERS),$(eval $(call library,$(d))))
+
+$(B)/obj/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	$(SAY) CC $<
+	$(Q)$(COMPILE) -MMD -MP -c -o $@ $<
+
+$(B)/bin/tests/%: $(B)/obj/tests/%.o $(call objects,$(HELPERS)) $(LIBRARIES)
+	@mkdir -p $(@D)
+	$(SAY) LINK $@
+	$(Q)$(COMPILE) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
+
+-include $(shell find $(B)/obj -name '*.d' 2>/dev/null)
+.PRECIOUS: $(B)/obj/%.o
+
+# -- set-up -------------------------------------------------------------------
+# One line a library: what to include, how to link, Debian's package.  A tool
+# has a line as well.  Looked for by compiling and linking; a gnuplot that is
+# there, of whatever flavour, is left alone.
+
+define NEEDS
+library stdio.h            -lm                  libc6-dev
+library gsl/gsl_cdf.h      -lgsl,-lgslcblas,-lm libgsl-dev
+library Random123/philox.h -lm                  librandom123-dev
+library yaml.h             -lyaml               libyaml-dev
+library jansson.h          -ljansson            libjansson-dev
+library cmocka.h           -lcmocka             libcmocka-dev
+library omp.h              -fopenmp             $(if $(findstring clang,$(CC)),libomp-dev,gcc)
+tool    gnuplot            -                    gnuplot-nox
+endef
+export NEEDS
+
+# Prints the packages that are missing.
+define FIND_MISSING
+echo "$$NEEDS" | while read -r kind what link package; do \
+    case $$kind in \
+    library) printf '#include <%s>\n' stdarg.h stddef.h stdint.h setjmp.h $$what | \
+        { cat; echo 'int main(void) { return 0; }'; } | \
+        $(CC) -x c - -o /dev/null -fopenmp $$(echo $$link | tr , ' ') \
+        >/dev/null 2>&1 || printf '%s ' $$package;; \
+    tool) command -v $$what >/dev/null 2>&1 || printf '%s ' $$package;; \
+    esac; \
+done
+endef
+
+.PHONY: setup tools-found
+setup: build/.setup-$(notdir $(firstword $(CC))) ## install what is missing (Debian); demo and test do it themselves
+
+build/.setup-$(notdir $(firstword $(CC))): Makefile
+	@mkdir -p build; \
+	missing=$$($(FIND_MISSING)); \
+	if [ -n "$$missing" ]; then \
+	    if ! command -v apt-get >/dev/null 2>&1; then \
+	        echo "missing, by the names of Debian's packages: $$missing" >&2; \
+	        exit 2; \
+	    fi; \
+	    if [ "$$(id -u)" = 0 ]; then as=; else as=sudo; fi; \
+	    echo "installing: $$missing"; \
+	    $$as apt-get update -qq && \
+	    $$as env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
+	        --no-install-recommends $$missing >build/setup.log 2>&1 || \
+	        { tail -n 20 build/setup.log >&2; exit 2; }; \
+	    missing=$$($(FIND_MISSING)); \
+	    if [ -n "$$missing" ]; then \
+	        echo "still missing after the installation: $$missing" >&2; \
+	        exit 2; \
+	    fi; \
+	fi; \
+	touch $@
+
+# A plain `make` installs nothing; it says what is missing before the compiler
+# does.
+tools-found:
+	@[ -e build/.setup-$(notdir $(firstword $(CC))) ] || { \
+	    missing=$$($(FIND_MISSING)); \
+	    [ -z "$$missing" ] || { \
+	        echo "missing, by the names of Debian's packages: $$missing" \
+	             "(make setup installs them)" >&2; exit 2; }; }
+
+# -- use ----------------------------------------------------------------------
+
+DEMO := build/demo
+BIN  := $(B)/bin
+CALCIUM := roughconductor:material=Ca,alpha=0.25
+
+.PHONY: demo
+demo: setup ## from measured calcium to a verdict and pictures, in build/demo/
+	@$(MAKE) --no-print-directory -j$(JOBS) all
+	@mkdir -p $(DEMO)
+	@echo
+	@echo "The optical constants of calcium, as measured:"
+	$(BIN)/bsdf-info ior Ca --nm 614,549,466
+	@echo
+	@echo "Is a rough conductor made of them sound?"
+	$(BIN)/bsdf-validate '$(CALCIUM)' --json $(DEMO)/verdict.json
+	@echo
+	@echo "Its lobe, and what it samples against what it says it samples:"
+	$(BIN)/bsdf-plot lobe '$(CALCIUM)' --wo 45,0 -o $(DEMO)/lobe.svg
+	$(BIN)/bsdf-plot histogram '$(CALCIUM)' --wo 45,0 -o $(DEMO)/histogram.svg
+
+# -- tests --------------------------------------------------------------------
+
+.PHONY: test run-tests headers
+test: setup ## set up, build, run every test (config=sanitize: with sanitizers)
+	@$(MAKE) --no-print-directory -j$(JOBS) all headers $(TESTS:%=$(B)/bin/tests/%)
+	@$(MAKE) --no-print-directory run-tests
+
+run-tests:
+	@failed=; \
+	for t in $(TESTS); do \
+	    BIN=$(BIN) $(WRAP) $(B)/bin/tests/$$t || failed="$$failed $$t"; \
+	done; \
+	[ -z "$$failed" ] || { echo "failed:$$failed" >&2; exit 1; }
+
+headers: $(HEADERS:%=$(B)/obj/%.alone)
+$(B)/obj/%.h.alone: %.h Makefile
+	@mkdir -p $(@D)
+	@$(COMPILE) -fsyntax-only -x c $< && touch $@
+
+.PHONY: valgrind
+valgrind: test ## the tests that malformed input goes through, under valgrind
+	@command -v valgrind >/dev/null || { echo "valgrind is missing" >&2; exit 2; }
+	@$(MAKE) --no-print-directory run-tests TESTS='$(filter test_spec test_ior test_cli,$(TESTS))' \
+	    WRAP='valgrind -q --error-exitcode=99 --leak-check=full --trace-children=no'
+
+.PHONY: golden
+golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)
+	@[ -x build/venv/bin/python ] || python3 -m venv build/venv
+	@build/venv/bin/python -c 'import mpmath' 2>/dev/null || \
+	    build/venv/bin/pip install -q mpmath
+	build/venv/bin/python tests/golden.py tests/golden
+
+# -- order --------------------------------------------------------------------
+
+C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(HELPERS)
+
+.PHONY: format check-format check-layers lint clean help
+format: ## lay the sources out
+	clang-format -i $(C_FILES)
+
+check-format: ## fail where `make format` would change something
+	@$(call install_tool,clang-format,clang-format)
+	clang-format --dry-run --Werror $(C_FILES)
+
+check-layers: ## fail where an include goes against the order of the folders
+	@sh tests/layers.sh
+
+lint: ## everything compiled by gcc and clang, warnings as errors; layers; clang-tidy
+	@$(call install_tool,clang,clang libomp-dev)
+	@$(call install_tool,clang-tidy,clang-tidy)
+	@for cc in gcc clang; do \
+	    for f in $(C_FILES); do \
+	        $$cc $(LANGUAGE) $(WARN) -O2 -Werror -fsyntax-only -x c $$f || exit 1; \
+	    done; \
+	    echo "$$cc: no warning in $(words $(C_FILES)) files"; \
+	done
+	@sh tests/layers.sh
+	@clang-tidy --quiet --warnings-as-errors='*' \
+	    --checks='-*,bugprone-*,-bugprone-easily-swappable-parameters,-bugprone-narrowing-conversions,clang-analyzer-*,-clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling' \
+	    $(SOURCES) -- $(LANGUAGE)
+
+# A tool that only developers need: $(1) the command, $(2) Debian's packages.
+define install_tool
+command -v $(1) >/dev/null 2>&1 || { \
+    command -v apt-get >/dev/null 2>&1 || { echo "missing: $(2)" >&2; exit 2; }; \
+    if [ "$$(id -u)" = 0 ]; then as=; else as=sudo; fi; \
+    $$as apt-get update -qq && $$as apt-get install -y -qq --no-install-recommends \
+        $(2) >/dev/null; }
+endef
+
+clean: ## remove build/
+	rm -rf build
+
+help: ## this list
+	@sed -n 's/^\([a-z][a-z-]*\):[^#]*## \(.*\)/make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | \
+	    sort | while IFS='	' read -r target about; do \
+	        printf '%-18s %s\n' "$$target" "$$about"; done
