@@ -30,7 +30,7 @@ CFLAGS   ?=
 CPPFLAGS ?=
 LDFLAGS  ?=
 WARN     := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes \
-            -Wmissing-prototypes -Wvla
+            -Wmissing-prototypes -Wvla -Wno-missing-field-initializers
 # c17 keeps multiply and add apart, so that the scalar and the batch path agree
 # to the last bit; it hides POSIX, which _GNU_SOURCE brings back.
 LANGUAGE := -std=c17 -D_GNU_SOURCE -fno-math-errno -fopenmp -I. \

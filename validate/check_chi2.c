@@ -1,10 +1,11 @@
 /* check_chi2.c - samples fall where the pdf says
  *
- * Chi-square at two resolutions: the bins (some 400) and groups of them (some
- * 20), as many bins have no power against smooth errors and few none against
- * local ones.  Refused samples and delta directions are cells as well, and
- * nothing is rescaled.  Cells that expect fewer than 100 samples are pooled;
- * a pool that still does is tested by its exact binomial tail, never dropped.
+ * Chi-square at two resolutions: the bins (some 400 that are full) and groups
+ * of them (some 20), as many bins have no power against smooth errors and few
+ * none against local ones.  Refused samples and delta directions are cells as
+ * well, and nothing is rescaled.  Cells that expect fewer than 100 samples are
+ * pooled, those that expect less than 1 apart; a pool that still expects fewer
+ * is tested by its exact binomial tail, never dropped.
  * The integration error is read in favour of the model: a residual counts only
  * as far as it exceeds N times the error.
  *
@@ -18,7 +19,7 @@
 
 #include "validate/pvalue.h"
 
-static const double pool_below = 100;
+static const double pool_below = 100, pool_apart_below = 1;
 
 struct cell {
     struct estimate share;
@@ -26,7 +27,8 @@ struct cell {
 };
 
 struct outcome {
-    double statistic, p, p_pool;
+    double statistic, p;
+    double p_pool[2]; /* of cells that expect less than 1, and fewer than 100 */
     long degrees;
     size_t worst; /* the cell with the largest residual */
     double worst_sigma;
@@ -47,31 +49,39 @@ static double residual(struct cell c, double samples)
     return copysign(excess, off) / sqrt(expected);
 }
 
+static void outcome_add(struct outcome *o, struct cell c, size_t at,
+                        double samples)
+{
+    const double r = residual(c, samples);
+    o->statistic += r * r;
+    o->degrees++;
+    if (fabs(r) > fabs(o->worst_sigma)) {
+        o->worst_sigma = r;
+        o->worst = at;
+    }
+}
+
 static struct outcome test(const struct cell *cell, size_t n, uint64_t samples)
 {
-    struct outcome o = { .degrees = -1, .p_pool = 1 };
-    struct cell pool = { { 0, 0 }, 0 };
+    struct outcome o = { .degrees = -1, .worst = n };
+    struct cell pool[2] = { { { 0, 0 }, 0 } };
     for (size_t i = 0; i < n; i++) {
-        if (cell[i].share.value * (double)samples < pool_below) {
-            cell_add(&pool, cell[i]);
-            continue;
-        }
-        const double r = residual(cell[i], (double)samples);
-        o.statistic += r * r;
-        o.degrees++;
-        if (fabs(r) > fabs(o.worst_sigma)) {
-            o.worst_sigma = r;
-            o.worst = i;
-        }
+        const double expected = cell[i].share.value * (double)samples;
+        if (expected < pool_below)
+            cell_add(&pool[expected >= pool_apart_below], cell[i]);
+        else
+            outcome_add(&o, cell[i], i, (double)samples);
     }
-    if (pool.share.value * (double)samples < pool_below) {
-        /* A share that rounding made negative is as good as 0. */
-        pool.share.value = fmax(pool.share.value, 0);
-        o.p_pool = pvalue_binomial(pool.count, samples, pool.share);
-    } else {
-        const double r = residual(pool, (double)samples);
-        o.statistic += r * r;
-        o.degrees++;
+    for (int k = 0; k < 2; k++) {
+        o.p_pool[k] = 1;
+        if (pool[k].share.value * (double)samples < pool_below) {
+            /* A share that rounding made negative is as good as 0. */
+            pool[k].share.value = fmax(pool[k].share.value, 0);
+            o.p_pool[k] =
+                pvalue_binomial(pool[k].count, samples, pool[k].share);
+        } else {
+            outcome_add(&o, pool[k], n, (double)samples);
+        }
     }
     o.p = pvalue_chi_square(o.statistic, o.degrees);
     return o;
@@ -110,19 +120,20 @@ static void run(const struct subject *s, struct verdict *v)
 
     const struct outcome f = test(fine, bins + others, survey->samples);
     const struct outcome c = test(coarse, groups + others, survey->samples);
-    const double p[] = { f.p, f.p_pool, c.p };
-    v->p = pvalue_best(p, 3);
+    /* The groups' pools are the fine ones once more. */
+    const double p[] = { f.p, f.p_pool[0], f.p_pool[1], c.p };
+    v->p = pvalue_best(p, 4);
     if (survey->stray > 0 || isnan(survey->total.value))
         v->p = pvalue_binomial(1, 1, (struct estimate){ 0, 0 });
     if (f.worst < bins) {
         v->has_wi = true;
-        v->wi = partition_centre(survey->partition, f.worst);
+        v->wi = patch_centre(partition_patch(survey->partition, f.worst));
     }
     snprintf(v->note, sizeof v->note,
-             "fine %.1f on %ld, coarse %.1f on %ld degrees of freedom, pool p "
-             "%.2g, worst bin %+.1f sigma%s",
-             f.statistic, f.degrees, c.statistic, c.degrees, f.p_pool,
-             f.worst_sigma,
+             "fine %.1f on %ld, coarse %.1f on %ld degrees of freedom, nearly "
+             "empty bins p %.2g, worst bin %+.1f sigma%s",
+             f.statistic, f.degrees, c.statistic, c.degrees,
+             fmin(f.p_pool[0], f.p_pool[1]), f.worst_sigma,
              survey->stray > 0 ? ", samples that are no directions" : "");
 done:
     free(fine);

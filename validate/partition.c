@@ -5,30 +5,33 @@
  */
 #include "validate/partition.h"
 
-#include <assert.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
-enum { EDGES_MAX = 512 };
+enum { QUANTILES = 20, INTERVALS_MAX = 192 };
+enum { COARSE_THETA = 5, COARSE_PHI = 4 };
 
-struct strip {
-    size_t slices, first; /* number of bins, and the first of them */
-    double phi[SLICES + 1];
+/* Intervals between sorted edges, and the group of QUANTILES that each is in
+ * or nearest to. */
+struct cuts {
+    size_t count;
+    double edge[INTERVALS_MAX + 1];
+    unsigned char quantile[INTERVALS_MAX];
 };
 
 struct side {
     double phi0;
-    size_t strips;
-    double theta[STRIPS + 1];
-    struct strip strip[STRIPS];
-    size_t coarse_first;
+    bool empty; /* of pilots */
+    struct cuts theta;
+    struct cuts phi[QUANTILES];      /* of the strips of each quantile */
+    size_t first[INTERVALS_MAX + 1]; /* bin of each strip */
+    size_t coarse;                   /* the first group */
 };
 
 struct partition {
     struct side side[2]; /* above and below */
     size_t bins, coarse;
 };
-
-enum { COARSE_THETA = 5, COARSE_PHI = 4 };
 
 struct polar {
     double theta, phi;
@@ -52,67 +55,82 @@ static int by_theta(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static int by_phi(const void *a, const void *b)
+static int ascending(const void *a, const void *b)
 {
-    const double x = ((const struct polar *)a)->phi;
-    const double y = ((const struct polar *)b)->phi;
+    const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
-/* Appends an edge between two pilots unless it would make an empty bin. */
-static void edge_add(double *edges, size_t *n, double a, double b, double last)
+/* The interval that holds x; the ends belong to the outer ones. */
+static size_t interval(const struct cuts *c, double x)
 {
-    const double edge = a + (b - a) / 2;
-    if (edge > edges[*n - 1] && edge < last)
-        edges[(*n)++] = edge;
-}
-
-static void strip_cut(struct strip *s, struct polar *pilot, size_t n,
-                      size_t *bins)
-{
-    size_t edges = 1;
-    qsort(pilot, n, sizeof *pilot, by_phi);
-    s->phi[0] = -PI;
-    for (size_t k = 1; k < SLICES && n >= 2 * SLICES; k++) {
-        const size_t at = k * n / SLICES;
-        edge_add(s->phi, &edges, pilot[at - 1].phi, pilot[at].phi, PI);
+    size_t low = 0, high = c->count;
+    while (high - low > 1) {
+        const size_t middle = (low + high) / 2;
+        if (x < c->edge[middle])
+            high = middle;
+        else
+            low = middle;
     }
-    s->phi[edges] = PI;
-    s->slices = edges;
-    s->first = *bins;
-    *bins += edges;
+    return low;
 }
 
+/* Cuts [from, to] at the quantiles of n sorted values, then grades the mesh. */
+static void cut(struct cuts *c, const double *value, size_t n, double from,
+                double to, double widest)
+{
+    double edge[QUANTILES + 1] = { from };
+    unsigned char at_quantile[QUANTILES] = { 0 };
+    size_t count = 1;
+    for (size_t k = 1; k < QUANTILES && n >= QUANTILES; k++) {
+        const size_t at = k * n / QUANTILES;
+        const double x = (value[at - 1] + value[at]) / 2;
+        if (x > edge[count - 1] && x < to) {
+            at_quantile[count] = (unsigned char)k;
+            edge[count++] = x;
+        }
+    }
+    edge[count] = to;
+    c->count =
+        mesh_grade(edge, count + 1, widest, c->edge, INTERVALS_MAX + 1) - 1;
+    for (size_t i = 0, k = 0; i < c->count; i++) {
+        while (k + 1 < count && c->edge[i] >= edge[k + 1])
+            k++;
+        c->quantile[i] = at_quantile[k];
+    }
+}
+
+/* value is room for n numbers. */
 static void side_cut(struct side *s, double from, double to,
-                     struct polar *pilot, size_t n, size_t *bins)
+                     struct polar *pilot, size_t n, double *value, size_t *bins)
 {
-    size_t edges = 1;
     qsort(pilot, n, sizeof *pilot, by_theta);
-    s->theta[0] = from;
-    for (size_t k = 1; k < STRIPS && n >= 2 * STRIPS; k++) {
-        const size_t at = k * n / STRIPS;
-        edge_add(s->theta, &edges, pilot[at - 1].theta, pilot[at].theta, to);
+    for (size_t i = 0; i < n; i++)
+        value[i] = pilot[i].theta;
+    cut(&s->theta, value, n, from, to, PI / 8);
+    for (size_t k = 0; k < QUANTILES; k++) {
+        const size_t first = k * n / QUANTILES;
+        const size_t last = (k + 1) * n / QUANTILES;
+        for (size_t i = first; i < last; i++)
+            value[i] = pilot[i].phi;
+        qsort(value + first, last - first, sizeof *value, ascending);
+        cut(&s->phi[k], value + first, last - first, -PI, PI, PI / 4);
     }
-    s->theta[edges] = to;
-    s->strips = edges;
-    for (size_t i = 0, first = 0; i < s->strips; i++) {
-        size_t next = first;
-        while (next < n &&
-               (i + 1 == s->strips || pilot[next].theta < s->theta[i + 1]))
-            next++;
-        strip_cut(&s->strip[i], pilot + first, next - first, bins);
-        first = next;
+    for (size_t i = 0; i < s->theta.count; i++) {
+        s->first[i] = *bins;
+        *bins += s->phi[s->theta.quantile[i]].count;
     }
 }
 
 struct partition *partition_new(const struct vec3 *pilot, size_t n)
 {
     struct partition *p = calloc(1, sizeof *p);
-    struct polar *polar = calloc(n ? n : 1, sizeof *polar);
-    if (!p || !polar) {
+    struct polar *polar = calloc(n + 1, sizeof *polar);
+    double *value = calloc(n + 1, sizeof *value);
+    if (!p || !polar || !value) {
         free(p);
-        free(polar);
-        return NULL;
+        p = NULL;
+        goto done;
     }
     for (int below = 0; below < 2; below++) {
         struct side *s = &p->side[below];
@@ -128,12 +146,15 @@ struct partition *partition_new(const struct vec3 *pilot, size_t n)
             if ((pilot[i].z < 0) == below)
                 polar[count++] = (struct polar){ polar_theta(pilot[i]),
                                                  polar_phi(pilot[i], s->phi0) };
-        s->coarse_first = p->coarse;
-        side_cut(s, below * PI / 2, (below + 1) * PI / 2, polar, count,
+        s->empty = count == 0;
+        s->coarse = p->coarse;
+        side_cut(s, below * PI / 2, (below + 1) * PI / 2, polar, count, value,
                  &p->bins);
-        p->coarse += s->strips > 1 ? COARSE_THETA * COARSE_PHI : 1;
+        p->coarse += s->empty ? 1 : COARSE_THETA * COARSE_PHI;
     }
+done:
     free(polar);
+    free(value);
     return p;
 }
 
@@ -152,104 +173,59 @@ size_t partition_coarse_bins(const struct partition *p)
     return p->coarse;
 }
 
-/* The interval of n that holds x; the ends belong to the outer ones. */
-static size_t interval(const double *edges, size_t n, double x)
-{
-    size_t low = 0, high = n;
-    while (high - low > 1) {
-        const size_t middle = (low + high) / 2;
-        if (x < edges[middle])
-            high = middle;
-        else
-            low = middle;
-    }
-    return low;
-}
-
 size_t partition_bin(const struct partition *p, struct vec3 w)
 {
     if (!(vec3_dot(w, w) > 0.5)) /* not a number fails too */
         return p->bins;
     const struct side *s = &p->side[w.z < 0];
-    const struct strip *t =
-        &s->strip[interval(s->theta, s->strips, polar_theta(w))];
-    return t->first + interval(t->phi, t->slices, polar_phi(w, s->phi0));
+    const size_t i = interval(&s->theta, polar_theta(w));
+    return s->first[i] +
+           interval(&s->phi[s->theta.quantile[i]], polar_phi(w, s->phi0));
 }
 
-/* The strip that a bin is in, and its side. */
-static const struct strip *strip_of(const struct partition *p, size_t bin,
-                                    const struct side **side)
+/* Where a bin is: its side, strip and slice. */
+struct place {
+    const struct side *side;
+    const struct cuts *phi;
+    size_t strip, slice;
+};
+
+static struct place place_of(const struct partition *p, size_t bin)
 {
-    const struct side *s = &p->side[bin >= p->side[1].strip[0].first];
-    size_t i = s->strips - 1;
-    while (s->strip[i].first > bin)
+    const struct side *s = &p->side[bin >= p->side[1].first[0]];
+    size_t i = s->theta.count - 1;
+    while (s->first[i] > bin)
         i--;
-    *side = s;
-    return &s->strip[i];
+    return (struct place){ s, &s->phi[s->theta.quantile[i]], i,
+                           bin - s->first[i] };
 }
 
 size_t partition_coarse(const struct partition *p, size_t bin)
 {
-    const struct side *s;
-    const struct strip *t = strip_of(p, bin, &s);
-    const size_t i = (size_t)(t - s->strip), k = bin - t->first;
-    return s->coarse_first + i * COARSE_THETA / s->strips * COARSE_PHI +
-           k * COARSE_PHI / t->slices;
+    const struct place at = place_of(p, bin);
+    const size_t row = at.side->theta.quantile[at.strip];
+    const size_t column = at.phi->quantile[at.slice];
+    return at.side->coarse + row * COARSE_THETA / QUANTILES * COARSE_PHI +
+           column * COARSE_PHI / QUANTILES;
 }
 
-struct vec3 partition_centre(const struct partition *p, size_t bin)
+struct patch partition_patch(const struct partition *p, size_t bin)
 {
-    const struct side *s;
-    const struct strip *t = strip_of(p, bin, &s);
-    const size_t i = (size_t)(t - s->strip), k = bin - t->first;
-    const double theta = (s->theta[i] + s->theta[i + 1]) / 2;
-    const double phi = s->phi0 + (t->phi[k] + t->phi[k + 1]) / 2;
-    return (struct vec3){ sin(theta) * cos(phi), sin(theta) * sin(phi),
-                          cos(theta) };
-}
-
-/* Adds the mesh cells of one strip to its bins. */
-static void strip_integrate(const struct strip *s, double phi0,
-                            const double *theta, size_t thetas, sphere_fn *f,
-                            const void *context, int parts, double tolerance,
-                            long *budget, struct estimate *out)
-{
-    double phi[EDGES_MAX];
-    const size_t phis =
-        mesh_grade(s->phi, s->slices + 1, PI / 4, phi, EDGES_MAX);
-    size_t slice = 0;
-    for (size_t k = 0; k + 1 < phis; k++) {
-        if (phi[k] >= s->phi[slice + 1])
-            slice++;
-        for (size_t i = 0; i + 1 < thetas; i++)
-            patch_integrate(f, context, parts,
-                            (struct patch){ theta[i], theta[i + 1],
-                                            phi0 + phi[k], phi0 + phi[k + 1] },
-                            tolerance, budget,
-                            out + (s->first + slice) * (size_t)parts);
-    }
+    const struct place at = place_of(p, bin);
+    const double *theta = at.side->theta.edge + at.strip;
+    const double *phi = at.phi->edge + at.slice;
+    return (struct patch){ theta[0], theta[1], at.side->phi0 + phi[0],
+                           at.side->phi0 + phi[1] };
 }
 
 void partition_integrate(const struct partition *p, sphere_fn *f,
                          const void *context, int parts, double tolerance,
                          long budget, struct estimate *out)
 {
-    for (size_t i = 0; i < p->bins * (size_t)parts; i++)
-        out[i] = (struct estimate){ 0, 0 };
-    for (int below = 0; below < 2; below++) {
-        const struct side *s = &p->side[below];
-        double theta[EDGES_MAX];
-        const size_t thetas =
-            mesh_grade(s->theta, s->strips + 1, PI / 8, theta, EDGES_MAX);
-        size_t first = 0;
-        for (size_t i = 0; i < s->strips; i++) {
-            size_t last = first + 1;
-            while (last + 1 < thetas && theta[last] < s->theta[i + 1])
-                last++;
-            strip_integrate(&s->strip[i], s->phi0, theta + first,
-                            last - first + 1, f, context, parts, tolerance,
-                            &budget, out);
-            first = last;
-        }
+    for (size_t bin = 0; bin < p->bins; bin++, out += parts) {
+        for (int part = 0; part < parts; part++)
+            out[part] = (struct estimate){ 0, 0 };
+        patch_integrate(f, context, parts, partition_patch(p, bin), tolerance,
+                        &budget, out);
     }
 }

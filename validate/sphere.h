@@ -12,6 +12,15 @@ struct patch {
     double theta0, theta1, phi0, phi1;
 };
 
+/** The direction in the middle of the angles. */
+static inline struct vec3 patch_centre(struct patch p)
+{
+    const double theta = (p.theta0 + p.theta1) / 2;
+    const double phi = (p.phi0 + p.phi1) / 2;
+    return (struct vec3){ sin(theta) * cos(phi), sin(theta) * sin(phi),
+                          cos(theta) };
+}
+
 /** Fills value[part * n + i] with the part-th integrand at w[i]. */
 typedef void sphere_fn(const void *context, size_t n, struct dirs w,
                        double *value);
