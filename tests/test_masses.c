@@ -1,0 +1,197 @@
+/* test_masses.c - integrals over bins are as good as their error says */
+#include <gsl/gsl_integration.h>
+#include <stdlib.h>
+
+#include "tests/close.h"
+#include "validate/subject.h"
+
+static void polynomials_are_exact(const void *context, const double *x,
+                                  const double *y, double *value)
+{
+    (void)context;
+    for (int i = 0, at = 0; i < QUADRATURE_ORDER; i++)
+        for (int k = 0; k < QUADRATURE_ORDER; k++, at++)
+            value[at] = 12 * pow(x[i], 11) * 8 * pow(y[k], 7);
+}
+
+static void degree_eleven_is_exact(void **state)
+{
+    (void)state;
+    struct estimate e = { 0, 0 };
+    long budget = 1000;
+    quadrature(polynomials_are_exact, NULL, 1, (struct rectangle){ 0, 1, 0, 2 },
+               1e-9, &budget, &e);
+    assert_close(e.value, 256, 1e-12);
+    assert_int_equal(budget, 1000 - 5 * 36);
+}
+
+static void a_mesh_never_more_than_doubles(void **state)
+{
+    (void)state;
+    const double edge[] = { 0, 1, 1.001, 1.0015, 3, 3.2 };
+    double graded[200];
+    const size_t n = mesh_grade(edge, 6, 0.5, graded, 200);
+    size_t given = 0;
+    for (size_t i = 0; i < n; i++)
+        for (int k = 0; k < 6; k++)
+            given += graded[i] == edge[k];
+    assert_int_equal(given, 6);
+    /* As wide as twice the interval beyond, and what lies between. */
+    for (size_t i = 0, k = 0; i + 1 < n; i++) {
+        const double width = graded[i + 1] - graded[i];
+        assert_true(width > 0);
+        assert_at_most(width, 0.5 + 1e-12);
+        while (graded[i] >= edge[k + 1])
+            k++;
+        if (k > 0)
+            assert_at_most(width, 2 * (graded[i] - edge[k - 1]) + 1e-12);
+        if (k < 4)
+            assert_at_most(width, 2 * (edge[k + 2] - graded[i + 1]) + 1e-12);
+    }
+    assert_int_equal(mesh_grade(edge, 6, 1e-9, graded, 10), 10);
+    assert_true(graded[9] == 3.2);
+}
+
+static struct subject survey(const char *spec, struct bsdf **b, double theta,
+                             double phi)
+{
+    struct subject s;
+    struct err err;
+    static struct plan plan;
+    plan = plan_default;
+    plan.samples = 1000;
+    *b = bsdf_new(spec, &bands_default, &err);
+    if (!*b)
+        fail_msg("%s", err.text);
+    if (!subject_init(&s, *b, dir_from_degrees(theta, phi), &plan, &err))
+        fail_msg("%s", err.text);
+    return s;
+}
+
+/* Seen from the normal, all normals sampled: theta_i = 2 theta_h, and the share
+ * of Beckmann normals within theta_h is 1 - exp(-tan^2(theta_h) / alpha^2). */
+static void bins_at_the_normal_are_what_they_are(void **state)
+{
+    (void)state;
+    static const char *const spec[] = {
+        "roughconductor:sample_visible=false,alpha=0.001",
+        "roughconductor:sample_visible=false,alpha=0.03",
+        "roughconductor:sample_visible=false,alpha=1",
+    };
+    static const double alpha[] = { 0.001, 0.03, 1 };
+    for (int i = 0; i < 3; i++) {
+        struct bsdf *b;
+        struct subject s = survey(spec[i], &b, 0, 0);
+        const struct survey *v = &s.survey;
+        for (size_t k = 0; k < partition_bins(v->partition); k++) {
+            const struct patch p = partition_patch(v->partition, k);
+            const double t0 = tan(p.theta0 / 2), t1 = tan(p.theta1 / 2);
+            const double a2 = alpha[i] * alpha[i];
+            const double share = p.theta0 >= PI / 2
+                                     ? 0
+                                     : exp(-t0 * t0 / a2) - exp(-t1 * t1 / a2);
+            assert_close(v->mass[k].value, share * (p.phi1 - p.phi0) / (2 * PI),
+                         1e-10);
+        }
+        assert_at_most(v->total.error, 1e-7);
+        subject_clear(&s);
+        bsdf_free(b);
+    }
+}
+
+struct nested {
+    const struct bsdf *b;
+    struct vec3 wo;
+    double theta, phi0, phi1;
+    gsl_integration_cquad_workspace *inner;
+};
+
+static double pdf_at_phi(double phi, void *context)
+{
+    const struct nested *n = context;
+    return bsdf_pdf(n->b, n->wo,
+                    (struct vec3){ sin(n->theta) * cos(phi),
+                                   sin(n->theta) * sin(phi), cos(n->theta) });
+}
+
+static double pdf_at_theta(double theta, void *context)
+{
+    struct nested *n = context;
+    gsl_function f = { pdf_at_phi, n };
+    double value;
+    n->theta = theta;
+    gsl_integration_cquad(&f, n->phi0, n->phi1, 1e-14, 1e-10, n->inner, &value,
+                          NULL, NULL);
+    return value * sin(theta);
+}
+
+/* Every bin within 1e-7 of GSL's doubly adaptive Clenshaw-Curtis, from the
+ * normal to 89.9 degrees, alpha 1e-3 to 1, and the sum of the errors too. */
+static void bins_agree_with_gsl(void **state)
+{
+    (void)state;
+    static const char *const spec[] = {
+        "roughconductor:alpha=0.001",
+        "roughconductor:alpha=0.001,distribution=ggx",
+        "roughconductor:alpha=0.05,sample_visible=false",
+        "roughconductor:alpha=1,distribution=ggx",
+        "roughconductor:alpha=1,sample_visible=false",
+    };
+    static const double theta_deg[] = { 0, 30, 75, 89, 89.9 };
+    gsl_integration_cquad_workspace *outer =
+        gsl_integration_cquad_workspace_alloc(100);
+    gsl_integration_cquad_workspace *inner =
+        gsl_integration_cquad_workspace_alloc(100);
+    for (int i = 0; i < 25; i++) {
+        struct bsdf *b;
+        struct subject s = survey(spec[i % 5], &b, theta_deg[i / 5], 40);
+        const struct survey *v = &s.survey;
+        const size_t bins = partition_bins(v->partition);
+        for (size_t k = (size_t)i; k < bins; k += 37) {
+            const struct patch p = partition_patch(v->partition, k);
+            struct nested n = { b, s.wo, 0, p.phi0, p.phi1, inner };
+            gsl_function f = { pdf_at_theta, &n };
+            double value;
+            gsl_integration_cquad(&f, p.theta0, p.theta1, 1e-13, 1e-9, outer,
+                                  &value, NULL, NULL);
+            assert_close(v->mass[k].value, value, 1e-9);
+        }
+        assert_at_most(v->total.error, 1e-7);
+        subject_clear(&s);
+        bsdf_free(b);
+    }
+    gsl_integration_cquad_workspace_free(inner);
+    gsl_integration_cquad_workspace_free(outer);
+}
+
+static void a_bin_holds_its_own_directions(void **state)
+{
+    (void)state;
+    struct bsdf *b;
+    struct subject s = survey("roughconductor:alpha=0.02", &b, 60, 130);
+    const struct partition *p = s.survey.partition;
+    for (size_t k = 0; k < partition_bins(p); k++) {
+        assert_int_equal(partition_bin(p, patch_centre(partition_patch(p, k))),
+                         k);
+        assert_true(partition_coarse(p, k) < partition_coarse_bins(p));
+    }
+    assert_int_equal(partition_bin(p, (struct vec3){ NAN, 0, 1 }),
+                     partition_bins(p));
+    subject_clear(&s);
+    bsdf_free(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        { "the rule is exact to degree eleven", degree_eleven_is_exact },
+        { "a graded mesh keeps its edges and its limits",
+          a_mesh_never_more_than_doubles },
+        { "bins seen from the normal have their analytic masses",
+          bins_at_the_normal_are_what_they_are },
+        { "bins agree with GSL from the normal to 89.9 degrees",
+          bins_agree_with_gsl },
+        { "a bin holds its own directions", a_bin_holds_its_own_directions },
+    };
+    return cmocka_run_group_tests_name("masses", tests, NULL, NULL);
+}
