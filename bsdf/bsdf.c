@@ -225,7 +225,9 @@ static bool settings_read(struct bsdf *b, const char *settings, struct err *err)
             return false;
     }
     struct setting *s = malloc(sizeof *s);
-    bool ok = s || err_set(err, "out of memory");
+    if (!s)
+        return err_set(err, "out of memory");
+    bool ok = true;
     for (const char *at = settings; ok && *at;) {
         ok = setting_read(&at, s, b->spec, err);
         if (!ok)

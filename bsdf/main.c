@@ -186,7 +186,7 @@ static bool eval_lines(const struct bsdf *b, FILE *in, const char *name,
     char line[1024];
     const int bands = bsdf_bands(b)->count;
     for (unsigned long long at = 1; fgets(line, sizeof line, in); at++) {
-        double angle[4];
+        double angle[4] = { 0 };
         struct err why;
         const size_t length = strlen(line);
         if (length + 1 == sizeof line && line[length - 1] != '\n')

@@ -63,13 +63,13 @@ static void run(const struct subject *s, struct verdict *v)
     const bool below = claims.lobes & BSDF_TRANSMISSION;
     v->unit = "relative";
     v->limit = 1e-10;
-    for (int i = 0; i < THETAS * TURNS * (1 + below); i++) {
-        struct vec3 wi = dir_from_degrees(theta_deg[i % THETAS],
-                                          360. / TURNS * (i / THETAS) + 7);
-        if (i >= THETAS * TURNS)
-            wi.z = -wi.z;
-        pair(s, v, wi);
-    }
+    for (int turn = 0; turn < TURNS; turn++)
+        for (int i = 0; i < THETAS; i++) {
+            const double phi_deg = 360. / TURNS * turn + 7;
+            pair(s, v, dir_from_degrees(theta_deg[i], phi_deg));
+            if (below)
+                pair(s, v, dir_from_degrees(180 - theta_deg[i], phi_deg));
+        }
     const struct rng rng = subject_rng(s, STREAM_PAIRS);
     for (uint64_t i = 0; i < 1024; i++) {
         const struct vec3 u = rng_uniform(rng, i);

@@ -61,16 +61,15 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The interval that holds x; the ends belong to the outer ones. */
+/* The interval that holds x; the ends belong to the outer ones.  Without a
+ * branch on x, which no processor could predict. */
 static size_t interval(const struct cuts *c, double x)
 {
-    size_t low = 0, high = c->count;
-    while (high - low > 1) {
-        const size_t middle = (low + high) / 2;
-        if (x < c->edge[middle])
-            high = middle;
-        else
-            low = middle;
+    size_t low = 0;
+    for (size_t n = c->count; n > 1;) {
+        const size_t half = n / 2;
+        low = x < c->edge[low + half] ? low : low + half;
+        n -= half;
     }
     return low;
 }

@@ -1,0 +1,311 @@
+/* test_cli.c - the programs as a user meets them, and the README's tour
+ *
+ * The programs are in the folder that BIN names, build/bin by default; the
+ * tests run in the root of the repository and write only into a folder of
+ * their own.
+ */
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tests/close.h"
+
+enum { OUTPUT_MAX = 1 << 20 };
+
+static char bin[4096], folder[64], output[OUTPUT_MAX];
+
+/* Runs a shell command with the programs in PATH and the test's own folder as
+ * $T; its exit status, or -1 if it was killed; output has what it printed. */
+static int sh(const char *command)
+{
+    FILE *pipe = popen(command, "r");
+    assert_non_null(pipe);
+    const size_t n = fread(output, 1, OUTPUT_MAX - 1, pipe);
+    output[n] = '\0';
+    while (fgetc(pipe) != EOF)
+        ;
+    const int status = pclose(pipe);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/* A wrong request: status 2, one line on standard error with both parts, and
+ * no more than comments on standard output. */
+static void refused(const char *command, const char *a, const char *b)
+{
+    char line[1024];
+    snprintf(line, sizeof line, "(%s) 2>&1 >$T/out </dev/null", command);
+    const int status = sh(line);
+    if (status != 2)
+        print_error("%s: status %d: %s\n", command, status, output);
+    assert_int_equal(status, 2);
+    assert_has(output, a);
+    assert_has(output, b);
+    assert_int_equal(sh("grep -v '^#' $T/out"), 1);
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    const char *given = getenv("BIN");
+    if (!realpath(given ? given : "build/bin", bin))
+        return -1;
+    char path[8192];
+    snprintf(path, sizeof path, "%s:%s", bin, getenv("PATH"));
+    setenv("PATH", path, 1);
+    unsetenv("BSDF_IOR_PATH");
+    strcpy(folder, "/tmp/bsdf-cli-XXXXXX");
+    if (!mkdtemp(folder))
+        return -1;
+    return setenv("T", folder, 1);
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    return sh("rm -rf \"$T\"");
+}
+
+static void list_names_models_keys_and_materials(void **state)
+{
+    (void)state;
+    assert_int_equal(sh("bsdf-info list"), 0);
+    assert_has(output, "roughconductor");
+    assert_has(output, "sample_visible");
+    assert_has(output, "Ca/Mathewson");
+}
+
+static void ior_prints_the_write_ups_calcium(void **state)
+{
+    (void)state;
+    assert_int_equal(sh("bsdf-info ior Ca --nm 614,549,466 | grep -v '^#' | "
+                        "awk '{printf \"%d %.5f %.5f\\n\", $1, $2, $3}'"),
+                     0);
+    assert_string_equal(output, "614 0.29294 2.71809\n549 0.28568 2.34786\n"
+                                "466 0.28733 1.83329\n");
+    assert_int_equal(sh("bsdf-info ior Ca"), 0);
+    assert_has(output, "Mathewson");
+    assert_has(output, "339.68 to 1653.12 nm");
+}
+
+static void eval_takes_lines_and_keeps_comments(void **state)
+{
+    (void)state;
+    assert_int_equal(
+        sh("printf '# mine\\n\\n 30 -1234.5 60 90 \\r\\n' >$T/in; "
+           "bsdf-info eval diffuse:reflectance=0.5 $T/in | tail -n 2"),
+        0);
+    assert_string_equal(output,
+                        "# mine\n30\t-1234.5\t60\t90\t0.15915494309189535\t"
+                        "0.15915494309189535\t0.15915494309189535\t"
+                        "0.15915494309189532\n");
+}
+
+static void eval_names_the_line_that_is_wrong(void **state)
+{
+    (void)state;
+    refused("printf '1 2 3\\n' | bsdf-info eval diffuse", "standard input:1",
+            "phi_i is missing");
+    sh("printf '1 2 3 4 5\\n' >$T/bad");
+    refused("bsdf-info eval diffuse $T/bad", "bad:1", "\"5");
+    refused("printf '181 0 0 0\\n' | bsdf-info eval diffuse", "181",
+            "[0, 180]");
+    refused("printf '0 inf 0 0\\n' | bsdf-info eval diffuse", "phi_o",
+            "finite");
+    refused("head -c 100000 /dev/zero | tr '\\0' 1 | bsdf-info eval diffuse",
+            "longer than", "");
+    refused("bsdf-info eval diffuse $T/none", "none", "No such file");
+    refused("bsdf-info eval diffuse $T", "directory", "");
+}
+
+static void samples_repeat_with_their_seed(void **state)
+{
+    (void)state;
+    assert_int_equal(
+        sh("bsdf-info sample roughconductor --wo 60,10 -n 100 --seed 7 >$T/a; "
+           "bsdf-info sample roughconductor --wo 60,10 -n 50 --seed 7 >$T/b; "
+           "bsdf-info sample roughconductor --wo 60,10 -n 50 --seed 8 >$T/c; "
+           "head -n 54 $T/a | cmp - $T/b && ! cmp -s $T/b $T/c"),
+        0);
+    assert_int_equal(sh("head -n 2 $T/a; sed -n 3p $T/a"), 0);
+    assert_has(output, "614, 549, 466 nm");
+    assert_has(output, "seed: 7");
+}
+
+static void wrong_requests_are_status_two(void **state)
+{
+    (void)state;
+    refused("bsdf-info", "expected a command", "");
+    refused("bsdf-info lst", "did you mean \"list\"", "");
+    refused("bsdf-info --nope", "nope", "");
+    refused("bsdf-info eval", "SPEC", "");
+    refused("bsdf-info sample diffuse", "--wo", "");
+    refused("bsdf-info sample diffuse --wo 1", "THETA,PHI", "\"1\"");
+    refused("bsdf-info sample diffuse --wo 200,0", "[0, 180]", "");
+    refused("bsdf-info sample diffuse --wo 0,0 -n 0", "-n 0", "[1,");
+    refused("bsdf-info sample diffuse --wo 0,0 -n -1", "-n -1", "");
+    refused("bsdf-info sample diffuse --wo 0,0 --seed 1e99", "seed", "");
+    refused("bsdf-info ior Cq", "Cq", "Ca");
+    refused("bsdf-info ior Ca --nm 5000", "5000", "1653.12");
+    refused("bsdf-info ior Ca --nm x", "wavelengths", "\"x\"");
+    refused("bsdf-info ior Ca --ior-path $T/none", "--ior-path", "none");
+    refused("bsdf-info list a b c", "too many", "");
+    refused("bsdf-validate", "expected a SPEC", "");
+    refused("bsdf-validate roughconducter", "did you mean", "");
+    refused("bsdf-validate diffuse --samples 10", "[1000,", "10");
+    refused("bsdf-validate diffuse --significance 0", "--significance 0", "");
+    refused("bsdf-validate diffuse --significance nan", "nan", "");
+    refused("bsdf-validate diffuse --threads 0", "--threads 0", "");
+}
+
+static void malformed_pages_are_status_two(void **state)
+{
+    (void)state;
+    sh("head -c 700 data/ior/Ca/Mathewson.yml >$T/cut.yml; "
+       "head -c 100000 /dev/urandom >$T/binary.yml; "
+       "head -c 300000 /dev/zero | tr '\\0' '[' >$T/deep.yml; "
+       "printf 'DATA:\\n  - type: tabulated nk\\n    data: |\\n"
+       "        0.5 nan 1\\n' >$T/nan.yml; "
+       "printf 'DATA:\\n  - type: tabulated nk\\n    data: |\\n"
+       "        0.4 1 1\\n        0.5 1\\n' >$T/short.yml; : >$T/empty.yml");
+    static const char *const file[] = { "cut",   "binary", "deep", "nan",
+                                        "short", "empty",  "none" };
+    for (size_t i = 0; i < sizeof file / sizeof *file; i++) {
+        char command[200];
+        snprintf(command, sizeof command, "timeout 5 bsdf-info ior $T/%s.yml",
+                 file[i]);
+        refused(command, file[i], ".yml");
+        snprintf(command, sizeof command,
+                 "timeout 5 bsdf-validate "
+                 "\"roughconductor:material='$T/%s.yml'\"",
+                 file[i]);
+        refused(command, file[i], "roughconductor");
+    }
+    refused("bsdf-info ior $T/nan.yml", "row 1", "nan");
+    refused("bsdf-info ior $T/short.yml", "row 2", "");
+}
+
+static void validate_says_sound_or_not(void **state)
+{
+    (void)state;
+    assert_int_equal(sh("bsdf-validate diffuse mirror --samples 1e4 "
+                        "--json $T/v.json"),
+                     0);
+    assert_has(output, "\n60 passed, 0 failed\n");
+    assert_has(output, "seed 1,");
+    assert_int_equal(sh("grep -c '\"verdict\": \"pass\"' $T/v.json"), 0);
+    assert_string_equal(output, "60\n");
+    assert_int_equal(sh("bsdf-validate course_microfacet:material=Au "
+                        "--samples 1e4 --wo 85,0 --json $T/v.json"),
+                     1);
+    assert_has(output, "1.327840/1.146905/0.644822");
+    assert_has(output, "\n5 passed, 3 failed\n");
+    assert_int_equal(sh("grep -c '\"verdict\": \"fail\"' $T/v.json"), 0);
+    assert_string_equal(output, "3\n");
+}
+
+static void a_verdict_can_be_replayed_alone(void **state)
+{
+    (void)state;
+    assert_int_equal(
+        sh("bsdf-validate diffuse roughconductor --samples 1e4 --seed 9 -v "
+           "--threads 2 | sed -n '/^roughconductor/,$p' | grep '75,40' >$T/a; "
+           "bsdf-validate roughconductor --samples 1e4 --seed 9 -v "
+           "--wo 75,40 | grep '75,40' >$T/b; "
+           "cut -c 1-38 $T/a >$T/c; cut -c 1-38 $T/b | cmp - $T/c && cat $T/c"),
+        0);
+    assert_has(output, "chi2");
+}
+
+static void a_report_is_whole_or_not_there(void **state)
+{
+    (void)state;
+    assert_int_equal(sh("bsdf-validate diffuse --samples 1e3 "
+                        "--json $T/none/v.json 2>&1 >/dev/null"),
+                     2);
+    assert_has(output, "none/v.json");
+    assert_int_equal(sh("echo old >$T/old.json; "
+                        "(ulimit -f 0; trap '' XFSZ; bsdf-validate diffuse "
+                        "--samples 1e3 --json $T/old.json 2>/dev/null "
+                        ">/dev/null); cat $T/old.json; ls $T | grep -c old"),
+                     0);
+    assert_string_equal(output, "old\n1\n");
+    assert_int_equal(sh("bsdf-info list >/dev/full 2>/dev/null"), 2);
+    assert_int_equal(
+        sh("bsdf-validate diffuse --samples 1e3 >/dev/full 2>/dev/null"), 2);
+}
+
+/* The README's tour: the commands of its sh blocks run in an empty folder that
+ * has build/bin, and each line of its text blocks is a line they printed. */
+static void the_readmes_tour_runs(void **state)
+{
+    (void)state;
+    FILE *readme = fopen("README.md", "r");
+    assert_non_null(readme);
+    char line[1024], path[4200];
+    snprintf(path, sizeof path, "%s/tour.sh", folder);
+    FILE *script = fopen(path, "w");
+    snprintf(path, sizeof path, "%s/expected", folder);
+    FILE *expected = fopen(path, "w");
+    assert_true(script && expected);
+    bool tour = false;
+    int commands = 0, lines = 0;
+    FILE *into = NULL;
+    while (fgets(line, sizeof line, readme)) {
+        if (strncmp(line, "## ", 3) == 0)
+            tour = strstr(line, "tour") != NULL;
+        if (strncmp(line, "```", 3) == 0) {
+            into = !tour || into                    ? NULL
+                   : strcmp(line, "```sh\n") == 0   ? script
+                   : strcmp(line, "```text\n") == 0 ? expected
+                                                    : NULL;
+            continue;
+        }
+        if (into && strcmp(line, "...\n") != 0 && line[0] != '\n') {
+            fputs(line, into);
+            commands += into == script;
+            lines += into == expected;
+        }
+    }
+    fclose(readme);
+    assert_int_equal(fclose(script) | fclose(expected), 0);
+    assert_true(commands >= 5 && lines >= 5);
+    char command[8500];
+    snprintf(command, sizeof command,
+             "mkdir -p $T/empty/build && ln -s %s $T/empty/build/bin && "
+             "cd $T/empty && sh -e $T/tour.sh >$T/printed 2>&1",
+             bin);
+    if (sh(command) != 0) {
+        sh("tail -n 20 $T/printed");
+        fail_msg("the tour failed: %s", output);
+    }
+    if (sh("grep -vxFf $T/printed $T/expected") != 1)
+        fail_msg("the README shows what the tour did not print:\n%s", output);
+    assert_int_equal(sh("ls $T/empty/build/tour/*.svg"), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        { "list names models, keys and materials",
+          list_names_models_keys_and_materials },
+        { "ior prints the write-up's calcium",
+          ior_prints_the_write_ups_calcium },
+        { "eval takes lines and keeps comments",
+          eval_takes_lines_and_keeps_comments },
+        { "eval names the line that is wrong",
+          eval_names_the_line_that_is_wrong },
+        { "samples repeat with their seed", samples_repeat_with_their_seed },
+        { "wrong requests are status 2, with a reason",
+          wrong_requests_are_status_two },
+        { "malformed pages are status 2, with a reason",
+          malformed_pages_are_status_two },
+        { "validate says sound or not", validate_says_sound_or_not },
+        { "a verdict can be replayed alone", a_verdict_can_be_replayed_alone },
+        { "a report is whole or not there", a_report_is_whole_or_not_there },
+        { "the README's tour runs in an empty folder", the_readmes_tour_runs },
+    };
+    return cmocka_run_group_tests_name("cli", tests, setup, teardown);
+}
