@@ -18,6 +18,7 @@ struct bsdf {
 };
 
 enum { NAME_MAX_LENGTH = 64, VALUE_MAX_LENGTH = 4096, WORDS_MAX = 64 };
+enum { DEPTH_MAX = 16 };
 
 /* One key=value, unquoted. */
 struct setting {
@@ -30,35 +31,67 @@ static bool name_char(char c)
     return isalnum((unsigned char)c) || c == '_';
 }
 
-static bool value_unquote(const char **at, char *value, const char *spec,
-                          struct err *err)
+/* A value in quotes, the quotes taken off. */
+static bool quoted_read(const char **at, char *value, const char *spec,
+                        struct err *err)
 {
     size_t n = 0;
-    const bool quoted = **at == '\'';
-    for (const char *p = *at + quoted;; p++) {
-        if (quoted && *p == '\0')
+    for (const char *p = *at + 1; n + 1 < VALUE_MAX_LENGTH; p++) {
+        if (*p == '\0')
             return err_set(err,
                            "\"%.200s\": the quote at \"%.40s\" is never "
                            "closed",
                            spec, *at);
-        if (quoted && p[0] == '\'' && p[1] != '\'') {
-            *at = p + 1;
-            break;
-        }
-        if (!quoted && (*p == ',' || *p == '\0')) {
+        if (*p == '\'' && *++p != '\'') {
             *at = p;
-            break;
+            value[n] = '\0';
+            return true;
         }
-        if (quoted && *p == '\'')
-            p++;
-        if (n + 1 >= VALUE_MAX_LENGTH)
-            return err_set(err,
-                           "\"%.40s...\": a value is longer than %d "
-                           "characters",
-                           spec, VALUE_MAX_LENGTH - 1);
         value[n++] = *p;
     }
-    value[n] = '\0';
+    return err_set(err, "\"%.40s...\": a value is longer than %d characters",
+                   spec, VALUE_MAX_LENGTH - 1);
+}
+
+/* How long a value without quotes is: to the next comma outside parentheses
+ * and outside the quotes in them. */
+static bool plain_length(const char *at, size_t *length, const char *spec,
+                         struct err *err)
+{
+    int depth = 0;
+    bool quoted = false;
+    size_t n = 0;
+    for (; at[n] && (depth > 0 || at[n] != ','); n++) {
+        quoted ^= depth > 0 && at[n] == '\'';
+        if (!quoted && at[n] == '(' && ++depth > DEPTH_MAX)
+            return err_set(err,
+                           "\"%.40s...\": parentheses are more than %d deep",
+                           spec, DEPTH_MAX);
+        if (!quoted && at[n] == ')' && --depth < 0)
+            break;
+    }
+    *length = n;
+    if (depth != 0)
+        return err_set(err, "\"%.200s\": %s at \"%.40s\"", spec,
+                       depth < 0 ? "a parenthesis that was not opened"
+                                 : "a parenthesis that is never closed",
+                       at);
+    return n < VALUE_MAX_LENGTH ||
+           err_set(err, "\"%.40s...\": a value is longer than %d characters",
+                   spec, VALUE_MAX_LENGTH - 1);
+}
+
+static bool value_text(const char **at, char *value, const char *spec,
+                       struct err *err)
+{
+    size_t length = 0;
+    if (**at == '\'')
+        return quoted_read(at, value, spec, err);
+    if (!plain_length(*at, &length, spec, err))
+        return false;
+    memcpy(value, *at, length);
+    value[length] = '\0';
+    *at += length;
     return true;
 }
 
@@ -76,7 +109,7 @@ static bool setting_read(const char **at, struct setting *s, const char *spec,
     memcpy(s->key, p, n);
     s->key[n] = '\0';
     *at = p + n + 1;
-    if (!value_unquote(at, s->value, spec, err))
+    if (!value_text(at, s->value, spec, err))
         return false;
     if (**at != ',' && **at != '\0')
         return err_set(err,
@@ -170,8 +203,29 @@ static bool word_read(const struct bsdf_type *type, const struct bsdf_param *p,
     return unknown(what, text, words, err);
 }
 
+/* The spec in a pair of parentheses. */
+static bool nested_read(const struct bsdf_type *type,
+                        const struct bsdf_param *p, const char *text,
+                        const struct bands *bands, struct bsdf **nested,
+                        struct err *err)
+{
+    const size_t length = strlen(text);
+    struct err why;
+    if (length < 2 || text[0] != '(' || text[length - 1] != ')')
+        return err_set(err,
+                       "%s: %s=%.60s: expected a model in parentheses, "
+                       "as in %s=(diffuse)",
+                       type->name, p->key, text, p->key);
+    char *spec = strndup(text + 1, length - 2);
+    if (!spec)
+        return err_set(err, "out of memory");
+    *nested = bsdf_new(spec, bands, &why);
+    free(spec);
+    return *nested || err_set(err, "%s: %s: %s", type->name, p->key, why.text);
+}
+
 static bool value_read(const struct bsdf_type *type, const struct bsdf_param *p,
-                       const char *text, int count, void *field,
+                       const char *text, const struct bands *bands, void *field,
                        struct err *err)
 {
     static const char *const flag[] = { "false", "true", NULL };
@@ -179,7 +233,7 @@ static bool value_read(const struct bsdf_type *type, const struct bsdf_param *p,
     case BSDF_NUMBER:
         return number_read(type, p, text, strlen(text), field, err);
     case BSDF_SPECTRUM:
-        return spectrum_read(type, p, text, count, field, err);
+        return spectrum_read(type, p, text, bands->count, field, err);
     case BSDF_CHOICE:
         return word_read(type, p, p->choices, text, field, err);
     case BSDF_FLAG:
@@ -188,6 +242,8 @@ static bool value_read(const struct bsdf_type *type, const struct bsdf_param *p,
         free(*(char **)field);
         *(char **)field = strdup(text);
         return *(char **)field || err_set(err, "out of memory");
+    case BSDF_NESTED:
+        return nested_read(type, p, text, bands, field, err);
     }
     return false;
 }
@@ -206,6 +262,7 @@ static void value_unset(const struct bsdf_param *p, void *field)
         *(int *)field = -1;
         break;
     case BSDF_STRING:
+    case BSDF_NESTED:
         break; /* NULL already */
     }
 }
@@ -221,7 +278,7 @@ static bool settings_read(struct bsdf *b, const char *settings, struct err *err)
         assert(n < WORDS_MAX);
         keys[n++] = p->key;
         value_unset(p, field);
-        if (p->def && !value_read(type, p, p->def, b->bands.count, field, err))
+        if (p->def && !value_read(type, p, p->def, &b->bands, field, err))
             return false;
     }
     struct setting *s = malloc(sizeof *s);
@@ -240,7 +297,7 @@ static bool settings_read(struct bsdf *b, const char *settings, struct err *err)
         else if (given[i])
             ok = err_set(err, "%s: %s is given twice", type->name, s->key);
         else
-            ok = value_read(type, &type->params[i], s->value, b->bands.count,
+            ok = value_read(type, &type->params[i], s->value, &b->bands,
                             (char *)b->state + type->params[i].offset, err);
         if (ok)
             given[i] = true;
@@ -326,9 +383,13 @@ void bsdf_free(struct bsdf *b)
     if (b->state) {
         if (b->type->clear)
             b->type->clear(b->state);
-        for (const struct bsdf_param *p = b->type->params; p->key; p++)
+        for (const struct bsdf_param *p = b->type->params; p->key; p++) {
+            void *field = (char *)b->state + p->offset;
             if (p->kind == BSDF_STRING)
-                free(*(char **)((char *)b->state + p->offset));
+                free(*(char **)field);
+            if (p->kind == BSDF_NESTED)
+                bsdf_free(*(struct bsdf **)field);
+        }
     }
     free(b->state);
     free(b->spec);
@@ -357,12 +418,13 @@ struct bsdf_claims bsdf_claims(const struct bsdf *b)
 
 struct spectrum bsdf_eval(const struct bsdf *b, struct vec3 wo, struct vec3 wi)
 {
-    return b->type->eval(b->state, wo, wi);
+    return b->type->eval ? b->type->eval(b->state, wo, wi)
+                         : (struct spectrum){ { 0 } };
 }
 
 double bsdf_pdf(const struct bsdf *b, struct vec3 wo, struct vec3 wi)
 {
-    return b->type->pdf(b->state, wo, wi);
+    return b->type->pdf ? b->type->pdf(b->state, wo, wi) : 0;
 }
 
 struct bsdf_sample bsdf_sample(const struct bsdf *b, struct vec3 wo,
@@ -379,7 +441,7 @@ void bsdf_eval_many(const struct bsdf *b, size_t n, struct dirs wo,
         return;
     }
     for (size_t i = 0; i < n; i++)
-        f[i] = b->type->eval(b->state, dirs_at(wo, i), dirs_at(wi, i));
+        f[i] = bsdf_eval(b, dirs_at(wo, i), dirs_at(wi, i));
 }
 
 void bsdf_pdf_many(const struct bsdf *b, size_t n, struct dirs wo,
@@ -390,7 +452,7 @@ void bsdf_pdf_many(const struct bsdf *b, size_t n, struct dirs wo,
         return;
     }
     for (size_t i = 0; i < n; i++)
-        pdf[i] = b->type->pdf(b->state, dirs_at(wo, i), dirs_at(wi, i));
+        pdf[i] = bsdf_pdf(b, dirs_at(wo, i), dirs_at(wi, i));
 }
 
 void bsdf_sample_many(const struct bsdf *b, size_t n, struct dirs wo,

@@ -33,7 +33,7 @@ struct bsdf_sample {
 
 /** One setting of a model: the table parses specs, checks ranges, prints help.
  * A value that is neither given nor has a default is NaN (number, spectrum),
- * NULL (string) or -1 (choice, flag). */
+ * NULL (string, nested) or -1 (choice, flag). */
 struct bsdf_param {
     const char *key;
     enum bsdf_param_kind {
@@ -42,6 +42,7 @@ struct bsdf_param {
         BSDF_CHOICE,   /* int, the index into choices */
         BSDF_FLAG,     /* int, 0 or 1, from "false" or "true" */
         BSDF_STRING,   /* char *, owned by the instance */
+        BSDF_NESTED,   /* struct bsdf *, likewise, from "(spec)" */
     } kind;
     size_t offset;              /* of the field in the model's state */
     const char *def;            /* as a user would write it, or NULL */
@@ -67,6 +68,7 @@ struct bsdf_claims {
     unsigned lobes;  /* of enum bsdf_lobes */
     bool lossless;   /* the albedo is 1 for every wo and band */
     bool reciprocal; /* f(wo, wi) = f(wi, wo), in radiance divided by n^2 */
+    bool two_sided;  /* it answers a wo below the surface as well */
     double eta;      /* index of the lower side over that of the upper */
 };
 
@@ -77,8 +79,10 @@ struct bsdf_type {
     size_t size;                     /* of the state that they fill */
     struct bsdf_claims (*claims)(const void *state, const struct bands *bands);
 
+    /* Both NULL where there are only delta lobes: 0. */
     struct spectrum (*eval)(const void *state, struct vec3 wo, struct vec3 wi);
     double (*pdf)(const void *state, struct vec3 wo, struct vec3 wi);
+
     struct bsdf_sample (*sample)(const void *state, struct vec3 wo,
                                  struct vec3 u); /* u uniform in [0, 1)^3 */
 
@@ -105,9 +109,9 @@ extern const struct bsdf_type *const bsdf_types[];
 struct bsdf;
 
 /** Makes what a spec describes: "name" or "name:key=value,key=a/b/c", where a
- * value may be in single quotes ('' is a quote inside) and a spectrum is one
- * value or one a band.  NULL and the reason if it cannot be made.  Owned by
- * the caller. */
+ * value may be in single quotes ('' is a quote inside), a spectrum is one value
+ * or one a band, and a model inside another is in parentheses.  NULL and the
+ * reason if it cannot be made.  Owned by the caller. */
 struct bsdf *bsdf_new(const char *spec, const struct bands *bands,
                       struct err *err);
 

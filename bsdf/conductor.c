@@ -1,36 +1,64 @@
-/* conductor.c - settling the index of a metal */
-#include "bsdf/conductor.h"
+/* conductor.c - a smooth metal
+ *
+ * The mirror direction with probability 1 and Fresnel's exact reflectance as
+ * weight.
+ */
+#include "bsdf/fresnel.h"
+#include "bsdf/metal.h"
+#include "bsdf/types.h"
 
-#include <string.h>
+struct conductor {
+    char *material;
+    struct spectrum eta, k, specular_reflectance;
+    int bands;
+};
 
-#include "bsdf/ior.h"
+static const struct bsdf_param params[] = {
+    METAL_PARAMS(struct conductor),
+    { "specular_reflectance", BSDF_SPECTRUM,
+      offsetof(struct conductor, specular_reflectance), "1", 0, 1, NULL,
+      "factor on the result; 1 is physical" },
+    { 0 },
+};
 
-bool conductor_settle(const char *model, const char *material,
-                      struct spectrum *eta, struct spectrum *k,
-                      const struct bands *bands, struct err *err)
+static bool init(void *state, const struct bands *bands, struct err *err)
 {
-    const bool has_eta = !isnan(eta->band[0]), has_k = !isnan(k->band[0]);
-    if (has_eta != has_k)
-        return err_set(err, "%s: %s is given without %s; expected both", model,
-                       has_eta ? "eta" : "k", has_eta ? "k" : "eta");
-    if (has_eta && material)
-        return err_set(err,
-                       "%s: expected either material or eta and k, not "
-                       "both",
-                       model);
-    if (!has_eta && material && strcmp(material, "none") != 0) {
-        struct err why;
-        if (!ior_lookup(material, bands, eta, k, &why))
-            return err_set(err, "%s: %s", model, why.text);
-    } else if (!has_eta) {
-        *eta = spectrum_of(bands->count, 0);
-        *k = spectrum_of(bands->count, 1);
-    }
-    for (int b = 0; b < bands->count; b++)
-        if (!(eta->band[b] + k->band[b] > 0))
-            return err_set(err,
-                           "%s: eta = k = 0 in band %d; expected at "
-                           "least one above 0",
-                           model, b + 1);
-    return true;
+    struct conductor *m = state;
+    m->bands = bands->count;
+    return metal_settle("conductor", m->material, &m->eta, &m->k, bands, err);
 }
+
+static struct bsdf_claims claims(const void *state, const struct bands *bands)
+{
+    (void)state, (void)bands;
+    return (struct bsdf_claims){ .lobes = BSDF_DELTA_REFLECTION,
+                                 .reciprocal = true,
+                                 .eta = 1 };
+}
+
+static struct bsdf_sample sample(const void *state, struct vec3 wo,
+                                 struct vec3 u)
+{
+    const struct conductor *m = state;
+    (void)u;
+    if (!(wo.z > 0))
+        return (struct bsdf_sample){ 0 };
+    struct bsdf_sample s = { .wi = { -wo.x, -wo.y, wo.z },
+                             .pdf = 1,
+                             .delta = true };
+    for (int b = 0; b < m->bands; b++)
+        s.weight.band[b] =
+            m->specular_reflectance.band[b] *
+            fresnel_conductor(fmin(wo.z, 1), m->eta.band[b], m->k.band[b]);
+    return s;
+}
+
+const struct bsdf_type type_conductor = {
+    .name = "conductor",
+    .about = "smooth metal",
+    .params = params,
+    .size = sizeof(struct conductor),
+    .claims = claims,
+    .sample = sample,
+    .init = init,
+};

@@ -15,8 +15,8 @@
  * with D Beckmann's and F the write-up's approximation.  A direction sampled
  * below the horizon is refused.
  */
-#include "bsdf/conductor.h"
 #include "bsdf/fresnel.h"
+#include "bsdf/metal.h"
 #include "bsdf/ndf.h"
 #include "bsdf/types.h"
 
@@ -36,7 +36,7 @@ static const char *const places[] = { "normal", "half", NULL };
 
 #define FIELD(name) offsetof(struct course_microfacet, name)
 static const struct bsdf_param params[] = {
-    CONDUCTOR_PARAMS(struct course_microfacet),
+    METAL_PARAMS(struct course_microfacet),
     { "alpha", BSDF_NUMBER, FIELD(alpha), "0.5", 1e-4, 1, NULL, "roughness" },
     { "lambda", BSDF_CHOICE, FIELD(lambda), "course", 0, 0, lambdas,
       "masking with the course's pi, or exact" },
@@ -49,8 +49,8 @@ static bool init(void *state, const struct bands *bands, struct err *err)
 {
     struct course_microfacet *m = state;
     m->bands = bands->count;
-    return conductor_settle("course_microfacet", m->material, &m->eta, &m->k,
-                            bands, err);
+    return metal_settle("course_microfacet", m->material, &m->eta, &m->k, bands,
+                        err);
 }
 
 static struct bsdf_claims claims(const void *state, const struct bands *bands)

@@ -65,3 +65,13 @@ double fresnel_dielectric(double cos_i, double eta, double *cos_t)
     const double rp = (s2 - c * q) / (s2 + c * q) * rs;
     return s2 + c * q > 0 ? (rs * rs + rp * rp) / 2 : rs * rs;
 }
+
+/* 1 - ((a - q) / (a + q))^2 = 4 a q / (a + q)^2, with q = eta cos_t, and a = c
+ * for s-polarised light and eta^2 c for p. */
+double fresnel_dielectric_through(double cos_i, double cos_t, double eta)
+{
+    const double c = cos_i, p = eta * eta * c, q = eta * cos_t;
+    return q > 0 ? 2 * c * q / ((c + q) * (c + q)) +
+                       2 * p * q / ((p + q) * (p + q))
+                 : 0;
+}

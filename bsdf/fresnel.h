@@ -23,4 +23,8 @@ double fresnel_schlick(double cos_i, double r0);
  * Born and Wolf, sec. 1.5.2. */
 double fresnel_dielectric(double cos_i, double eta, double *cos_t);
 
+/** 1 less that, from both cosines, cos_t beyond: without its cancellation where
+ * nearly all is reflected, and without cos_t's own near the critical angle. */
+double fresnel_dielectric_through(double cos_i, double cos_t, double eta);
+
 #endif

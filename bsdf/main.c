@@ -120,6 +120,9 @@ static void param_print(const struct bsdf_param *p)
     case BSDF_STRING:
         printf("name or path");
         break;
+    case BSDF_NESTED:
+        printf("a spec in parentheses");
+        break;
     }
     printf("%s%s\n    %-22s %s\n", p->def ? "; default " : "",
            p->def ? p->def : "", "", p->about);

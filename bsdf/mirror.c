@@ -26,18 +26,6 @@ static struct bsdf_claims claims(const void *state, const struct bands *bands)
     };
 }
 
-static struct spectrum eval(const void *state, struct vec3 wo, struct vec3 wi)
-{
-    (void)state, (void)wo, (void)wi;
-    return (struct spectrum){ { 0 } };
-}
-
-static double pdf(const void *state, struct vec3 wo, struct vec3 wi)
-{
-    (void)state, (void)wo, (void)wi;
-    return 0;
-}
-
 static struct bsdf_sample sample(const void *state, struct vec3 wo,
                                  struct vec3 u)
 {
@@ -57,7 +45,5 @@ const struct bsdf_type type_mirror = {
     .params = params,
     .size = sizeof(struct mirror),
     .claims = claims,
-    .eval = eval,
-    .pdf = pdf,
     .sample = sample,
 };

@@ -14,12 +14,12 @@
  * [3] E. Heitz, Understanding the Masking-Shadowing Function in
  *     Microfacet-Based BRDFs, JCGT 3(2), 2014, eq. 99 (correlated G2).
  */
-#include "bsdf/conductor.h"
 #include "bsdf/fresnel.h"
+#include "bsdf/metal.h"
 #include "bsdf/ndf.h"
+#include "bsdf/roughness.h"
 #include "bsdf/types.h"
 
-enum { CORRELATED, SEPARABLE };
 enum { EXACT, APPROX, SCHLICK };
 
 struct roughconductor {
@@ -31,26 +31,12 @@ struct roughconductor {
     int bands;
 };
 
-static const char *const distributions[] = { "beckmann", "ggx", NULL };
-static const char *const maskings[] = { "correlated", "separable", NULL };
 static const char *const fresnels[] = { "exact", "approx", "schlick", NULL };
 
 #define FIELD(name) offsetof(struct roughconductor, name)
-#define ROUGHNESS_MIN 1e-4
 static const struct bsdf_param params[] = {
-    CONDUCTOR_PARAMS(struct roughconductor),
-    { "alpha", BSDF_NUMBER, FIELD(alpha), NULL, ROUGHNESS_MIN, 1, NULL,
-      "roughness of the surface, same along x and y; 0.1 if not given" },
-    { "alpha_u", BSDF_NUMBER, FIELD(alpha_u), NULL, ROUGHNESS_MIN, 1, NULL,
-      "roughness along x, with alpha_v in place of alpha" },
-    { "alpha_v", BSDF_NUMBER, FIELD(alpha_v), NULL, ROUGHNESS_MIN, 1, NULL,
-      "roughness along y" },
-    { "distribution", BSDF_CHOICE, FIELD(distribution), "beckmann", 0, 0,
-      distributions, "of the microfacet normals" },
-    { "sample_visible", BSDF_FLAG, FIELD(sample_visible), "true", 0, 0, NULL,
-      "sample the normals that wo sees, or all of them" },
-    { "masking", BSDF_CHOICE, FIELD(masking), "correlated", 0, 0, maskings,
-      "Smith's shadowing and masking, height-correlated or separable" },
+    METAL_PARAMS(struct roughconductor),
+    ROUGHNESS_PARAMS(struct roughconductor),
     { "fresnel", BSDF_CHOICE, FIELD(fresnel), "exact", 0, 0, fresnels,
       "reflectance of a facet" },
     { "specular_reflectance", BSDF_SPECTRUM, FIELD(specular_reflectance), "1",
@@ -61,20 +47,11 @@ static const struct bsdf_param params[] = {
 static bool init(void *state, const struct bands *bands, struct err *err)
 {
     struct roughconductor *m = state;
-    const bool has_u = !isnan(m->alpha_u), has_v = !isnan(m->alpha_v);
-    if (has_u != has_v)
-        return err_set(err,
-                       "roughconductor: %s is given without %s; expected "
-                       "both",
-                       has_u ? "alpha_u" : "alpha_v",
-                       has_u ? "alpha_v" : "alpha_u");
-    if (has_u && !isnan(m->alpha))
-        return err_set(err, "roughconductor: expected either alpha or alpha_u "
-                            "and alpha_v, not both");
-    if (!has_u)
-        m->alpha_u = m->alpha_v = isnan(m->alpha) ? 0.1 : m->alpha;
-    if (!conductor_settle("roughconductor", m->material, &m->eta, &m->k, bands,
+    if (!roughness_settle("roughconductor", m->alpha, &m->alpha_u, &m->alpha_v,
                           err))
+        return false;
+    if (!metal_settle("roughconductor", m->material, &m->eta, &m->k, bands,
+                      err))
         return false;
     m->bands = bands->count;
     for (int b = 0; b < m->bands; b++)
@@ -92,7 +69,7 @@ static struct bsdf_claims claims(const void *state, const struct bands *bands)
 
 static const struct ndf *ndf(const struct roughconductor *m)
 {
-    return m->distribution ? &ndf_ggx : &ndf_beckmann;
+    return roughness_ndf[m->distribution];
 }
 
 static double lambda(const struct roughconductor *m, struct vec3 w)
@@ -108,8 +85,8 @@ static double d(const struct roughconductor *m, struct vec3 h)
 /* From lambda(wo) and lambda(wi). */
 static double g2(const struct roughconductor *m, double lo, double li)
 {
-    return m->masking == CORRELATED ? 1 / (1 + lo + li)
-                                    : 1 / ((1 + lo) * (1 + li));
+    return m->masking == MASKING_CORRELATED ? 1 / (1 + lo + li)
+                                            : 1 / ((1 + lo) * (1 + li));
 }
 
 /* The model's F, with its factor, times a common one. */

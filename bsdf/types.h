@@ -4,7 +4,10 @@
 
 #include "bsdf/bsdf.h"
 
-extern const struct bsdf_type type_course_microfacet, type_diffuse, type_mirror,
-    type_roughconductor;
+extern const struct bsdf_type type_blendbsdf, type_conductor, type_course_glass,
+    type_course_microfacet, type_course_mirror, type_course_refraction,
+    type_dielectric, type_diffuse, type_mirror, type_refraction,
+    type_roughconductor, type_roughdielectric, type_thindielectric,
+    type_twosided;
 
 #endif

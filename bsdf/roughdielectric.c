@@ -1,0 +1,248 @@
+/* roughdielectric.c - glass of small interfaces
+ *
+ * With n the index on the side of wi over that on the side of wo, and h the
+ * facets' normal, kept above the surface:
+ *
+ *   reflection    h ~ wo + wi
+ *     f   = F D G2 / (4 |cos_o cos_i|)
+ *     pdf = F p(h) / (4 |wo.h|)
+ *   transmission  h ~ wo + n wi
+ *     f   = (1 - F) D G2 |wo.h| |wi.h| / (|cos_o cos_i| |wo + n wi|^2)
+ *     pdf = (1 - F) p(h) n^2 |wi.h| / |wo + n wi|^2
+ *
+ * where |wo + n wi| = |wo.h + n wi.h|, p(h) is that of visible or of all
+ * normals, and both directions must be on the side of h that they are on the
+ * side of the surface.  f is radiance's: it obeys f(wo, wi) / n_o^2 =
+ * f(wi, wo) / n_i^2.
+ *
+ * Masking: reflection as in roughconductor; in transmission heights are
+ * correlated as G2 = Beta(1 + Lambda(wo), 1 + Lambda(wi)), or separable.
+ *
+ * Equal indices bend nothing: light goes straight through, one direction.
+ *
+ * [1] B. Walter et al., Microfacet Models for Refraction through Rough
+ *     Surfaces, EGSR 2007, eq. 16, 17, 20, 21.
+ * [2] E. Heitz et al., Multiple-Scattering Microfacet BSDFs with the Smith
+ *     Model, SIGGRAPH 2016, supplemental: the Beta function.
+ */
+#include <gsl/gsl_sf_gamma.h>
+
+#include "bsdf/fresnel.h"
+#include "bsdf/medium.h"
+#include "bsdf/ndf.h"
+#include "bsdf/roughness.h"
+#include "bsdf/types.h"
+
+enum { BOTH, REFLECTION, TRANSMISSION };
+
+struct roughdielectric {
+    char *int_ior, *ext_ior;
+    struct spectrum specular_reflectance, specular_transmittance;
+    double alpha, alpha_u, alpha_v;
+    double eta; /* below over above */
+    int distribution, sample_visible, masking, lobes;
+};
+
+static const char *const lobe_sets[] = { "both", "reflection", "transmission",
+                                         NULL };
+
+#define FIELD(name) offsetof(struct roughdielectric, name)
+static const struct bsdf_param params[] = {
+    MEDIUM_PARAMS(struct roughdielectric),
+    ROUGHNESS_PARAMS(struct roughdielectric),
+    { "specular_reflectance", BSDF_SPECTRUM, FIELD(specular_reflectance), "1",
+      0, 1, NULL, "factor on what is reflected; 1 is physical" },
+    { "specular_transmittance", BSDF_SPECTRUM, FIELD(specular_transmittance),
+      "1", 0, 1, NULL, "factor on what is refracted; 1 is physical" },
+    { "lobes", BSDF_CHOICE, FIELD(lobes), "both", 0, 0, lobe_sets,
+      "one alone is drawn with its own share, the rest absorbed" },
+    { 0 },
+};
+
+static bool init(void *state, const struct bands *bands, struct err *err)
+{
+    struct roughdielectric *m = state;
+    return roughness_settle("roughdielectric", m->alpha, &m->alpha_u,
+                            &m->alpha_v, err) &&
+           medium_settle("roughdielectric", m->int_ior, m->ext_ior, bands,
+                         &m->eta, err);
+}
+
+static struct bsdf_claims claims(const void *state, const struct bands *bands)
+{
+    const struct roughdielectric *m = state;
+    const unsigned lobes[] = { BSDF_GLOSSY_REFLECTION |
+                                   BSDF_GLOSSY_TRANSMISSION,
+                               BSDF_GLOSSY_REFLECTION,
+                               BSDF_GLOSSY_TRANSMISSION };
+    (void)bands;
+    return (struct bsdf_claims){
+        .lobes = m->eta != 1              ? lobes[m->lobes]
+                 : m->lobes == REFLECTION ? 0u
+                                          : BSDF_DELTA_TRANSMISSION,
+        .reciprocal = true,
+        .two_sided = true,
+        .eta = m->eta,
+    };
+}
+
+static const struct ndf *ndf(const struct roughdielectric *m)
+{
+    return roughness_ndf[m->distribution];
+}
+
+static double lambda(const struct roughdielectric *m, struct vec3 w)
+{
+    return ndf_lambda(ndf(m), m->alpha_u, m->alpha_v, w);
+}
+
+static double g2(const struct roughdielectric *m, double lo, double li,
+                 bool reflected)
+{
+    if (m->masking == MASKING_SEPARABLE)
+        return 1 / ((1 + lo) * (1 + li));
+    return reflected ? 1 / (1 + lo + li) : exp(gsl_sf_lnbeta(1 + lo, 1 + li));
+}
+
+/* A facet that turns light from one direction to the other. */
+struct facet {
+    bool exists, reflects;
+    struct vec3 h;
+    double n;      /* index on the side of wi over that of wo */
+    double co, ci; /* |wo.h|, |wi.h| */
+    double square; /* |wo + n wi|^2; 4 co^2 in reflection */
+    double share;  /* F, or 1 - F */
+};
+
+static struct facet facet_between(const struct roughdielectric *m,
+                                  struct vec3 wo, struct vec3 wi)
+{
+    struct facet t = { .reflects = wo.z * wi.z > 0,
+                       .n = wo.z > 0 ? m->eta : 1 / m->eta };
+    if (!(wo.z * wi.z != 0) || m->eta == 1)
+        return t;
+    if (m->lobes == (t.reflects ? TRANSMISSION : REFLECTION))
+        return t;
+    const struct vec3 sum = vec3_add(wo, vec3_scale(t.reflects ? 1 : t.n, wi));
+    t.square = vec3_dot(sum, sum);
+    t.h = vec3_scale(copysign(1, sum.z) / sqrt(t.square), sum);
+    const double o = vec3_dot(wo, t.h) * copysign(1, wo.z);
+    const double i = vec3_dot(wi, t.h) * copysign(1, wi.z);
+    t.exists = o > 0 && i > 0;
+    t.co = fmin(o, 1);
+    t.ci = fmin(i, 1);
+    t.share = t.reflects ? fresnel_dielectric(t.co, t.n, NULL)
+                         : fresnel_dielectric_through(t.co, t.ci, t.n);
+    return t;
+}
+
+static double d(const struct roughdielectric *m, struct vec3 h)
+{
+    return ndf_d(ndf(m), m->alpha_u, m->alpha_v, h);
+}
+
+static struct spectrum eval(const void *state, struct vec3 wo, struct vec3 wi)
+{
+    const struct roughdielectric *m = state;
+    const struct facet t = facet_between(m, wo, wi);
+    if (!t.exists)
+        return (struct spectrum){ { 0 } };
+    const double common = t.share * d(m, t.h) *
+                          g2(m, lambda(m, wo), lambda(m, wi), t.reflects) /
+                          fabs(wo.z * wi.z);
+    return t.reflects ? spectrum_scale(common / 4, m->specular_reflectance)
+                      : spectrum_scale(common * t.co * t.ci / t.square,
+                                       m->specular_transmittance);
+}
+
+/* The pdf from lambda(wo), which is asked for visible normals alone. */
+static double density(const struct roughdielectric *m, struct vec3 wo,
+                      const struct facet *t, double lo)
+{
+    const double p = m->sample_visible
+                         ? t->co * d(m, t->h) / (fabs(wo.z) * (1 + lo))
+                         : d(m, t->h) * t->h.z;
+    return t->share * p *
+           (t->reflects ? 1 / (4 * t->co) : t->n * t->n * t->ci / t->square);
+}
+
+static double pdf(const void *state, struct vec3 wo, struct vec3 wi)
+{
+    const struct roughdielectric *m = state;
+    const struct facet t = facet_between(m, wo, wi);
+    return t.exists ? density(m, wo, &t, m->sample_visible ? lambda(m, wo) : 0)
+                    : 0;
+}
+
+static struct bsdf_sample sample(const void *state, struct vec3 wo,
+                                 struct vec3 u)
+{
+    const struct roughdielectric *m = state;
+    const struct bsdf_sample refused = { 0 };
+    const double side = copysign(1, wo.z);
+    if (wo.z == 0)
+        return refused;
+    if (m->eta == 1)
+        return m->lobes == REFLECTION
+                   ? refused
+                   : (struct bsdf_sample){ .wi = vec3_scale(-1, wo),
+                                           .pdf = 1,
+                                           .weight = m->specular_transmittance,
+                                           .delta = true };
+    /* Seen from below the facets are those of the opposite direction. */
+    const struct vec3 h =
+        m->sample_visible
+            ? ndf_sample_visible(ndf(m), m->alpha_u, m->alpha_v,
+                                 vec3_scale(side, wo), u.x, u.y)
+            : ndf_sample_all(ndf(m), m->alpha_u, m->alpha_v, u.x, u.y);
+    const double n = wo.z > 0 ? m->eta : 1 / m->eta;
+    const double c = vec3_dot(wo, h) * side;
+    if (!(c > 0))
+        return refused;
+    double cos_t;
+    const bool reflects = u.z < fresnel_dielectric(fmin(c, 1), n, &cos_t);
+    const struct vec3 wi =
+        reflects ? vec3_unit(vec3_reflect(wo, h))
+                 : medium_refract(wo, vec3_scale(side, h), n, cos_t);
+    const struct facet t = facet_between(m, wo, wi);
+    if (!t.exists || t.reflects != reflects)
+        return refused;
+    const double lo = lambda(m, wo);
+    const double p = density(m, wo, &t, lo);
+    if (!(p > 0))
+        return refused;
+    const double g = g2(m, lo, lambda(m, wi), reflects);
+    const double ratio =
+        m->sample_visible ? g * (1 + lo) : g * t.co / (fabs(wo.z) * t.h.z);
+    return (struct bsdf_sample){
+        .wi = wi,
+        .pdf = p,
+        .weight = reflects ? spectrum_scale(ratio, m->specular_reflectance)
+                           : spectrum_scale(ratio / (n * n),
+                                            m->specular_transmittance),
+    };
+}
+
+static double facet_d(const void *state, struct vec3 h)
+{
+    return d(state, h);
+}
+
+static double facet_g1(const void *state, struct vec3 w)
+{
+    return 1 / (1 + lambda(state, w));
+}
+
+const struct bsdf_type type_roughdielectric = {
+    .name = "roughdielectric",
+    .about = "rough glass (Walter et al., Smith)",
+    .params = params,
+    .size = sizeof(struct roughdielectric),
+    .claims = claims,
+    .eval = eval,
+    .pdf = pdf,
+    .sample = sample,
+    .init = init,
+    .facet_d = facet_d,
+    .facet_g1 = facet_g1,
+};
