@@ -70,8 +70,6 @@ static void sound_models_pass_over_many_seeds(void **state)
     enum { SPECS = sizeof spec / sizeof *spec, SEEDS = 10 };
     struct bsdf *b[SPECS];
     struct err err;
-    struct vec3 wo[RUN_DIRECTIONS];
-    run_directions(wo);
     for (int i = 0; i < SPECS; i++)
         if (!(b[i] = bsdf_new(spec[i], &bands_default, &err)))
             fail_msg("%s", err.text);
@@ -81,7 +79,7 @@ static void sound_models_pass_over_many_seeds(void **state)
         plan.seed = seed;
         plan.samples = 30000;
         assert_true(run_checks(&run, &plan, (const struct bsdf *const *)b,
-                               SPECS, wo, RUN_DIRECTIONS, NULL, NULL, &err));
+                               SPECS, NULL, 0, NULL, NULL, &err));
         assert_int_equal(run.failed, 0);
         assert_true(run.passed > 100);
         run_clear(&run);
@@ -237,16 +235,14 @@ static void the_verdicts_do_not_depend_on_threads(void **state)
     (void)state;
     struct run run[2];
     struct err err;
-    struct vec3 wo[RUN_DIRECTIONS];
-    run_directions(wo);
     const struct bsdf *b =
         bsdf_new("roughconductor:alpha=0.2", &bands_default, &err);
     for (int i = 0; i < 2; i++) {
         struct plan plan = plan_default;
         plan.samples = 20000;
         plan.threads = 1 + 2 * i;
-        assert_true(run_checks(&run[i], &plan, &b, 1, wo, RUN_DIRECTIONS, NULL,
-                               NULL, &err));
+        assert_true(
+            run_checks(&run[i], &plan, &b, 1, NULL, 0, NULL, NULL, &err));
     }
     for (size_t i = 0; i < run[0].results; i++)
         for (int c = 0; c < checks_count(); c++) {

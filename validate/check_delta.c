@@ -18,13 +18,14 @@ static bool expected(const struct subject *s, bool refracted, struct vec3 *wi)
     const struct vec3 wo = s->wo;
     const double eta = bsdf_claims(s->bsdf).eta;
     const double ratio = wo.z > 0 ? 1 / eta : eta;
-    const double sin2 = (wo.x * wo.x + wo.y * wo.y) * ratio * ratio;
+    /* 1 - (ratio sin_o)^2, without its cancellation at grazing */
+    const double cos2 = ratio * ratio * wo.z * wo.z + (1 - ratio) * (1 + ratio);
     *wi = (struct vec3){ -wo.x, -wo.y, wo.z };
     if (!refracted)
         return true;
     *wi = (struct vec3){ -wo.x * ratio, -wo.y * ratio,
-                         copysign(sqrt(fmax(1 - sin2, 0)), -wo.z) };
-    return sin2 < 1;
+                         copysign(sqrt(fmax(cos2, 0)), -wo.z) };
+    return cos2 > 0;
 }
 
 static bool fault(struct verdict *v, const struct delta *d, const char *what,
@@ -45,11 +46,14 @@ static bool fault(struct verdict *v, const struct delta *d, const char *what,
 static bool delta_judge(const struct subject *s, const struct delta *d,
                         unsigned lobes, double *p, struct verdict *v)
 {
-    /* Directions are exact to a few roundings. */
-    const double close = 1e-14;
     const bool refracted = d->wi.z * s->wo.z < 0;
     struct vec3 right;
     const bool exists = expected(s, refracted, &right);
+    /* Directions are exact to a few roundings e; the cosine beyond is the root
+     * of a difference, and so off by e / cos, or sqrt(e) where it is 0. */
+    const double e = 16 * 0x1p-52;
+    const double close =
+        1e-14 + (refracted ? fmin(e / fabs(right.z), sqrt(e)) : 0);
     const double off = vec3_length(vec3_add(d->wi, vec3_scale(-1, right)));
     if (!(lobes &
           (refracted ? BSDF_DELTA_TRANSMISSION : BSDF_DELTA_REFLECTION)))
@@ -74,21 +78,28 @@ static void run(const struct subject *s, struct verdict *v)
         snprintf(v->note, sizeof v->note, "no delta lobe");
         return;
     }
-    double p[DELTAS_MAX];
+    double p[DELTAS_MAX] = { 1 };
     v->unit = "sigma";
     if (survey->delta_others > 0) {
         fault(v, NULL, "more delta directions than a lobe each",
               (double)survey->delta_others);
         return;
     }
-    if ((lobes & BSDF_DELTA_REFLECTION) && survey->deltas == 0) {
+    if (s->wo.z < 0 && !bsdf_claims(s->bsdf).two_sided && survey->deltas == 0) {
+        v->applies = false;
+        snprintf(v->note, sizeof v->note, "one-sided");
+        return;
+    }
+    /* A mirror that is all there is always reflects. */
+    if (lobes == BSDF_DELTA_REFLECTION && survey->deltas == 0) {
         fault(v, NULL, "the claimed delta reflection was never drawn", 1);
         return;
     }
     for (int k = 0; k < survey->deltas; k++)
         if (!delta_judge(s, &survey->delta[k], lobes, &p[k], v))
             return;
-    v->p = pvalue_best(p, survey->deltas);
+    /* None at all: beyond the critical angle, say. */
+    v->p = survey->deltas ? pvalue_best(p, survey->deltas) : 1;
     snprintf(v->note, sizeof v->note, "%d direction%s, the first %llu times",
              survey->deltas, survey->deltas == 1 ? "" : "s",
              (unsigned long long)(survey->deltas ? survey->delta[0].count : 0));

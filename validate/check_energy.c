@@ -13,6 +13,10 @@ static const double error_limit = 1e-6, loss_limit = 1e-3;
 static void run(const struct subject *s, struct verdict *v)
 {
     struct estimate albedo[BANDS_MAX];
+    const struct bsdf_claims claims = bsdf_claims(s->bsdf);
+    /* A one-sided model takes all that comes from below. */
+    const bool lossless =
+        claims.lossless && (s->wo.z > 0 || (claims.two_sided && s->wo.z < 0));
     subject_albedo(s, albedo);
     const int bands = bsdf_bands(s->bsdf)->count;
     double least = INFINITY;
@@ -31,7 +35,7 @@ static void run(const struct subject *s, struct verdict *v)
     if (!v->passed) {
         snprintf(v->note + used, sizeof v->note - (size_t)used,
                  ", undecided: error above %g", error_limit);
-    } else if (bsdf_claims(s->bsdf).lossless && v->value - v->error <= 1 &&
+    } else if (lossless && v->value - v->error <= 1 &&
                !(least + v->error >= 1 - loss_limit)) {
         v->passed = false;
         snprintf(v->note + used, sizeof v->note - (size_t)used,

@@ -74,16 +74,17 @@ static size_t interval(const struct cuts *c, double x)
     return low;
 }
 
-/* Cuts [from, to] at the quantiles of n sorted values, then grades the mesh. */
+/* Cuts [from, to] at the quantiles of n sorted values, at fewer of them where
+ * the values are fewer, then grades the mesh. */
 static void cut(struct cuts *c, const double *value, size_t n, double from,
                 double to, double widest)
 {
     double edge[QUANTILES + 1] = { from };
     unsigned char at_quantile[QUANTILES] = { 0 };
     size_t count = 1;
-    for (size_t k = 1; k < QUANTILES && n >= QUANTILES; k++) {
+    for (size_t k = 1; k < QUANTILES; k++) {
         const size_t at = k * n / QUANTILES;
-        const double x = (value[at - 1] + value[at]) / 2;
+        const double x = at > 0 ? (value[at - 1] + value[at]) / 2 : from;
         if (x > edge[count - 1] && x < to) {
             at_quantile[count] = (unsigned char)k;
             edge[count++] = x;
@@ -107,9 +108,11 @@ static void side_cut(struct side *s, double from, double to,
     for (size_t i = 0; i < n; i++)
         value[i] = pilot[i].theta;
     cut(&s->theta, value, n, from, to, PI / 8);
+    /* Where a strip would have too few pilots, all strips take all of them. */
+    const bool few = n < 10 * QUANTILES;
     for (size_t k = 0; k < QUANTILES; k++) {
-        const size_t first = k * n / QUANTILES;
-        const size_t last = (k + 1) * n / QUANTILES;
+        const size_t first = few ? 0 : k * n / QUANTILES;
+        const size_t last = few ? n : (k + 1) * n / QUANTILES;
         for (size_t i = first; i < last; i++)
             value[i] = pilot[i].phi;
         qsort(value + first, last - first, sizeof *value, ascending);

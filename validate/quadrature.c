@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-enum { ORDER = QUADRATURE_ORDER, DEPTH_MAX = 30 };
+enum { ORDER = QUADRATURE_ORDER, DEPTH_MAX = 60 };
 
 /* Nodes and weights on [-1, 1], the roots of P6.  M. Abramowitz and I. Stegun,
  * Handbook of Mathematical Functions, 1964, table 25.4. */
@@ -48,37 +48,49 @@ static void rule(struct job *j, struct rectangle r, double *value)
     }
 }
 
-static void refine(struct job *j, struct rectangle r, const double *coarse,
+/* Both halves of a rectangle along x or along y, and how far the sum is off the
+ * whole. */
+struct halves {
+    struct rectangle r[2];
+    double value[2][QUADRATURE_PARTS_MAX], off[QUADRATURE_PARTS_MAX];
+    double most; /* off, in tolerances */
+};
+
+static void halve(struct job *j, struct rectangle r, bool along_x,
+                  const double *whole, struct halves *h)
+{
+    h->r[0] = h->r[1] = r;
+    if (along_x)
+        h->r[0].x1 = h->r[1].x0 = (r.x0 + r.x1) / 2;
+    else
+        h->r[0].y1 = h->r[1].y0 = (r.y0 + r.y1) / 2;
+    rule(j, h->r[0], h->value[0]);
+    rule(j, h->r[1], h->value[1]);
+    h->most = 0;
+    for (int part = 0; part < j->parts; part++) {
+        h->off[part] = h->value[0][part] + h->value[1][part] - whole[part];
+        if (!(fabs(h->off[part]) <= h->most * j->tolerance)) /* or NaN */
+            h->most = fabs(h->off[part]) / j->tolerance;
+    }
+}
+
+static void refine(struct job *j, struct rectangle r, const double *whole,
                    int depth)
 {
-    const double x = (r.x0 + r.x1) / 2, y = (r.y0 + r.y1) / 2;
-    const struct rectangle quarter[4] = {
-        { r.x0, x, r.y0, y },
-        { r.x0, x, y, r.y1 },
-        { x, r.x1, r.y0, y },
-        { x, r.x1, y, r.y1 },
-    };
-    double fine[4][QUADRATURE_PARTS_MAX];
-    for (int q = 0; q < 4; q++)
-        rule(j, quarter[q], fine[q]);
-
-    double sum[QUADRATURE_PARTS_MAX], off[QUADRATURE_PARTS_MAX];
-    bool agree = true;
-    for (int part = 0; part < j->parts; part++) {
-        sum[part] =
-            fine[0][part] + fine[1][part] + fine[2][part] + fine[3][part];
-        off[part] = fabs(sum[part] - coarse[part]);
-        agree &= off[part] <= j->tolerance;
-    }
-    if (agree || depth == DEPTH_MAX || *j->budget <= 0) {
+    struct halves x, y;
+    halve(j, r, true, whole, &x);
+    halve(j, r, false, whole, &y);
+    /* A NaN is not looked into. */
+    if (!(x.most + y.most > 1) || depth == DEPTH_MAX || *j->budget <= 0) {
         for (int part = 0; part < j->parts; part++) {
-            j->out[part].value += sum[part];
-            j->out[part].error += off[part];
+            j->out[part].value += whole[part] + x.off[part] + y.off[part];
+            j->out[part].error += fabs(x.off[part]) + fabs(y.off[part]);
         }
         return;
     }
-    for (int q = 0; q < 4; q++)
-        refine(j, quarter[q], fine[q], depth + 1);
+    const struct halves *worse = x.most > y.most ? &x : &y;
+    for (int k = 0; k < 2; k++)
+        refine(j, worse->r[k], worse->value[k], depth + 1);
 }
 
 void quadrature(quadrature_fn *f, const void *context, int parts,

@@ -1,10 +1,11 @@
 /* quadrature.h - integrals over rectangles, with an error bound
  *
  * A rectangle is integrated by a 6 x 6 Gauss-Legendre rule, compared with the
- * sum over its quarters, and split until the two agree; the finer value is
- * taken and the difference is the bound.  A rule sees only what its nodes see:
- * a mesh must be graded toward a peak, never laid over it, and have its edges
- * where the integrand has kinks.
+ * sums over its halves along x and along y, and split along the worse of the
+ * two until both agree with it; so a jump along an axis costs a bisection.  The
+ * value is corrected by both differences, and they are the bound.  A rule sees
+ * only what its nodes see: a mesh must be graded toward a peak, never laid over
+ * it, and have its edges where the integrand has kinks.
  */
 #ifndef VALIDATE_QUADRATURE_H
 #define VALIDATE_QUADRATURE_H
@@ -26,7 +27,7 @@ typedef void quadrature_fn(const void *context,
                            const double y[QUADRATURE_ORDER], double *value);
 
 /** Adds the integrals over a rectangle to out[0 .. parts-1]; parts at most
- * QUADRATURE_PARTS_MAX.  A leaf is accepted where the two rules differ by at
+ * QUADRATURE_PARTS_MAX.  A leaf is accepted where the rules differ by at
  * most the tolerance, or where the budget of evaluations, shared by many calls,
  * is used up; either way the difference is in the error. */
 void quadrature(quadrature_fn *f, const void *context, int parts,

@@ -58,22 +58,27 @@ bool run_checks(struct run *run, const struct plan *plan,
                 const struct vec3 *wo, size_t wos, run_progress *progress,
                 void *context, struct err *err)
 {
-    const size_t n = bsdfs * wos, c = (size_t)checks_count();
-    *run = (struct run){ .plan = *plan, .results = n };
-    run->result = calloc(n ? n : 1, sizeof *run->result);
-    for (size_t i = 0; run->result && i < n; i++) {
-        run->result[i].bsdf = bsdf[i / wos];
-        run->result[i].wo = wo[i % wos];
-        run->result[i].verdict = calloc(c, sizeof *run->result[i].verdict);
-        if (!run->result[i].verdict) {
-            run_clear(run);
-            break;
+    const size_t c = (size_t)checks_count();
+    *run = (struct run){ .plan = *plan };
+    run->result = calloc(bsdfs * (wos ? wos : RUN_DIRECTIONS_MAX) + 1,
+                         sizeof *run->result);
+    for (size_t i = 0; run->result && i < bsdfs; i++) {
+        struct vec3 own[RUN_DIRECTIONS_MAX];
+        const size_t count = wos ? wos : run_directions(bsdf[i], own);
+        for (size_t k = 0; run->result && k < count; k++) {
+            struct result *r = &run->result[run->results++];
+            r->bsdf = bsdf[i];
+            r->wo = wos ? wo[k] : own[k];
+            r->verdict = calloc(c, sizeof *r->verdict);
+            if (!r->verdict)
+                run_clear(run);
         }
     }
     if (!run->result)
         return err_set(err, "out of memory");
 
     size_t done = 0;
+    const size_t n = run->results;
     bool ok = true;
     const int threads = plan->threads ? plan->threads : omp_get_max_threads();
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
@@ -121,11 +126,25 @@ void run_clear(struct run *run)
     ROUGH("roughconductor:distribution=" distribution                          \
           ",sample_visible=" visible)
 
+#define ROUGHDIELECTRIC(distribution, visible)                                 \
+    ROUGH("roughdielectric:distribution=" distribution                         \
+          ",sample_visible=" visible)
+
 const char *const run_all_specs[] = {
     "diffuse",
     "diffuse:reflectance=1",
     "mirror",
     "mirror:reflectance=0.9",
+    "conductor:material=Au",
+    "refraction",
+    "dielectric",
+    "dielectric:int_ior=1,ext_ior=1.5",
+    "dielectric:int_ior=1,ext_ior=1",
+    "dielectric:fresnel=schlick",
+    "dielectric:lobes=reflection",
+    "dielectric:lobes=transmission",
+    "thindielectric",
+    "thindielectric:int_ior=1,ext_ior=1",
     ROUGHCONDUCTOR("beckmann", "true"),
     ROUGHCONDUCTOR("beckmann", "false"),
     ROUGHCONDUCTOR("ggx", "true"),
@@ -133,13 +152,39 @@ const char *const run_all_specs[] = {
     "roughconductor:material=Ca,masking=separable,alpha_u=0.3,alpha_v=0.1",
     "roughconductor:material=Au,fresnel=schlick,alpha=0.25",
     "roughconductor:material=Cu,fresnel=approx,distribution=ggx,alpha=0.25",
+    ROUGHDIELECTRIC("beckmann", "true"),
+    ROUGHDIELECTRIC("ggx", "false"),
+    "roughdielectric:int_ior=1,ext_ior=1",
+    "roughdielectric:int_ior=1.05,ext_ior=1",
+    "roughdielectric:masking=separable,alpha_u=0.3,alpha_v=0.1",
+    "roughdielectric:lobes=reflection",
+    "roughdielectric:lobes=transmission",
+    "twosided:front=(diffuse),back=(roughconductor)",
+    "blendbsdf:weight=0.3,bsdf_0=(diffuse),bsdf_1=(roughdielectric)",
+    "blendbsdf:weight=0.3,bsdf_0=(mirror),bsdf_1=(roughconductor:alpha=0.3)",
+    "course_mirror",
+    "course_refraction:factor=right",
+    "course_glass:factor=right,schlick_at=thinner",
     ROUGH("course_microfacet:lambda=exact,fresnel_at=half"),
     NULL,
 };
 
-void run_directions(struct vec3 wo[RUN_DIRECTIONS])
+size_t run_directions(const struct bsdf *b, struct vec3 wo[RUN_DIRECTIONS_MAX])
 {
-    static const double theta_deg[RUN_DIRECTIONS] = { 0, 30, 75, 89, 89.9 };
-    for (int i = 0; i < RUN_DIRECTIONS; i++)
-        wo[i] = dir_from_degrees(theta_deg[i], 40);
+    static const double theta_deg[] = { 0, 30, 75, 89, 89.9 };
+    const struct bsdf_claims claims = bsdf_claims(b);
+    size_t n = 0;
+    for (int i = 0; i < 5; i++) {
+        wo[n++] = dir_from_degrees(theta_deg[i], 40);
+        if (claims.two_sided)
+            wo[n++] = dir_from_degrees(180 - theta_deg[i], 40);
+    }
+    if (claims.two_sided && (claims.lobes & BSDF_TRANSMISSION) &&
+        claims.eta != 1) {
+        const double critical_deg =
+            asin(fmin(claims.eta, 1 / claims.eta)) * (180 / PI);
+        wo[n++] = dir_from_degrees(
+            claims.eta > 1 ? 180 - critical_deg : critical_deg, 40);
+    }
+    return n;
 }

@@ -30,8 +30,9 @@ struct run {
 /** Called by one thread at a time, after each subject. */
 typedef void run_progress(void *context, size_t done, size_t of);
 
-/** Checks every bsdf from every direction; progress may be NULL.  False when
- * out of memory.  The bsdfs must outlive the run. */
+/** Checks every bsdf from every direction, or from its own run_directions where
+ * wos is 0; progress may be NULL.  False when out of memory.  The bsdfs must
+ * outlive the run. */
 bool run_checks(struct run *run, const struct plan *plan,
                 const struct bsdf *const *bsdf, size_t bsdfs,
                 const struct vec3 *wo, size_t wos, run_progress *progress,
@@ -45,8 +46,10 @@ void holm(struct verdict **verdict, size_t n, double significance);
  * ways of sampling.  The last is NULL. */
 extern const char *const run_all_specs[];
 
-/** theta 0, 30, 75, 89, 89.9 degrees at an azimuth without symmetry. */
-enum { RUN_DIRECTIONS = 5 };
-void run_directions(struct vec3 wo[RUN_DIRECTIONS]);
+/** theta 0, 30, 75, 89, 89.9 degrees at an azimuth without symmetry; for a
+ * two-sided model also 180 degrees less each, and the critical angle of its
+ * eta where it transmits.  Returns how many. */
+enum { RUN_DIRECTIONS_MAX = 11 };
+size_t run_directions(const struct bsdf *b, struct vec3 wo[RUN_DIRECTIONS_MAX]);
 
 #endif

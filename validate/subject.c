@@ -130,17 +130,57 @@ static void pdf_at(const void *context, size_t n, struct dirs w, double *value)
     bsdf_pdf_many(s->bsdf, n, many_wo(&m, s, n), w, value);
 }
 
-static void f_cos_at(const void *context, size_t n, struct dirs w,
-                     double *value)
+double subject_compression(const struct subject *s, struct vec3 wi)
+{
+    const double eta = bsdf_claims(s->bsdf).eta;
+    return wi.z * s->wo.z >= 0 ? 1 : s->wo.z > 0 ? eta * eta : 1 / (eta * eta);
+}
+
+static void energy_at(const void *context, size_t n, struct dirs w,
+                      double *value)
 {
     struct many m;
     const struct subject *s = context;
     struct spectrum f[BATCH];
     bsdf_eval_many(s->bsdf, n, many_wo(&m, s, n), w, f);
     const int bands = bsdf_bands(s->bsdf)->count;
-    for (int b = 0; b < bands; b++)
-        for (size_t i = 0; i < n; i++)
-            value[(size_t)b * n + i] = f[i].band[b] * fabs(w.z[i]);
+    for (size_t i = 0; i < n; i++) {
+        const double scale =
+            fabs(w.z[i]) * subject_compression(s, dirs_at(w, i));
+        for (int b = 0; b < bands; b++)
+            value[(size_t)b * n + i] = f[i].band[b] * scale;
+    }
+}
+
+/* Up to PILOTS directions on each side; more are drawn than usual where few of
+ * them come on a side that has any, lest a rare lobe be lost. */
+static struct vec3 *pilots_draw(const struct subject *s, size_t *n)
+{
+    enum { ENOUGH = 500, ROUNDS = 64 };
+    const struct rng rng = subject_rng(s, STREAM_PILOT);
+    const unsigned lobes = bsdf_claims(s->bsdf).lobes & ~(unsigned)BSDF_DELTA;
+    struct vec3 *pilot = malloc(2 * PILOTS * sizeof *pilot);
+    struct bsdf_sample batch[BATCH];
+    size_t count[2] = { 0, 0 };
+    bool rare = true;
+    *n = 0;
+    for (uint64_t at = 0; pilot && at < ROUNDS * PILOTS; at += BATCH) {
+        if (at >= PILOTS && !rare)
+            break;
+        draw(s, rng, at, BATCH, batch);
+        for (size_t i = 0; i < BATCH; i++) {
+            const bool through = batch[i].wi.z * s->wo.z < 0;
+            if (refused(&batch[i]) || batch[i].delta ||
+                !(vec3_dot(batch[i].wi, batch[i].wi) > 0.5) ||
+                count[through] == PILOTS)
+                continue;
+            count[through]++;
+            pilot[(*n)++] = batch[i].wi;
+        }
+        rare = ((lobes & BSDF_REFLECTION) && count[0] < ENOUGH) ||
+               ((lobes & BSDF_TRANSMISSION) && count[1] < ENOUGH);
+    }
+    return pilot;
 }
 
 bool subject_init(struct subject *s, const struct bsdf *b, struct vec3 wo,
@@ -148,17 +188,8 @@ bool subject_init(struct subject *s, const struct bsdf *b, struct vec3 wo,
 {
     *s = (struct subject){ .bsdf = b, .wo = wo, .plan = plan };
     struct survey *v = &s->survey;
-    struct vec3 *pilot = malloc(PILOTS * sizeof *pilot);
-    struct bsdf_sample batch[BATCH];
-    size_t n = 0;
-    const struct rng rng = subject_rng(s, STREAM_PILOT);
-    for (uint64_t at = 0; pilot && at < PILOTS; at += BATCH) {
-        draw(s, rng, at, BATCH, batch);
-        for (size_t i = 0; i < BATCH; i++)
-            if (!refused(&batch[i]) && !batch[i].delta &&
-                vec3_dot(batch[i].wi, batch[i].wi) > 0.5)
-                pilot[n++] = batch[i].wi;
-    }
+    size_t n;
+    struct vec3 *pilot = pilots_draw(s, &n);
     v->partition = pilot ? partition_new(pilot, n) : NULL;
     free(pilot);
     const size_t bins = v->partition ? partition_bins(v->partition) : 1;
@@ -249,7 +280,7 @@ void subject_albedo(const struct subject *s, struct estimate albedo[BANDS_MAX])
         albedo[b] = (struct estimate){ 0, part ? 0 : INFINITY };
     if (!part)
         return;
-    partition_integrate(v->partition, f_cos_at, s, bands, mass_tolerance,
+    partition_integrate(v->partition, energy_at, s, bands, mass_tolerance,
                         mass_budget, part);
     for (size_t i = 0; i < bins; i++)
         for (int b = 0; b < bands; b++)
@@ -257,8 +288,9 @@ void subject_albedo(const struct subject *s, struct estimate albedo[BANDS_MAX])
                 estimate_add(albedo[b], part[i * (size_t)bands + (size_t)b]);
     free(part);
     for (int b = 0; b < bands; b++) {
-        albedo[b].error += rounding * fabs(albedo[b].value);
         for (int k = 0; k < v->deltas; k++)
-            albedo[b].value += v->delta[k].pdf * v->delta[k].weight.band[b];
+            albedo[b].value += v->delta[k].pdf * v->delta[k].weight.band[b] *
+                               subject_compression(s, v->delta[k].wi);
+        albedo[b].error += rounding * fabs(albedo[b].value);
     }
 }

@@ -62,7 +62,12 @@ struct rng subject_rng(const struct subject *s, enum stream purpose);
 /** Probability that the pdf and the deltas leave for refusal, with error. */
 struct estimate survey_refusal(const struct survey *v);
 
-/** Integrals of f |cos| over the sphere, deltas included, one a band. */
+/** (n_i / n_o)^2, which makes energy of radiance that comes from wi: 1 on the
+ * side of wo, and by the claimed eta through the surface. */
+double subject_compression(const struct subject *s, struct vec3 wi);
+
+/** The share of light that is not lost, one a band: the integral of
+ * f (n_i / n_o)^2 |cos| over the sphere, deltas included. */
 void subject_albedo(const struct subject *s, struct estimate albedo[BANDS_MAX]);
 
 /** How far plain double arithmetic may put the pdf, or the largest band of f,
