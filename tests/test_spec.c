@@ -38,6 +38,9 @@ static void good_specs_are_made(void **state)
     made("roughconductor:eta=0,k=1,alpha_u=1,alpha_v=0.0001,distribution=ggx,"
          "sample_visible=false,masking=separable,fresnel=schlick,"
          "specular_reflectance=1/0/0.5");
+    made("dielectric:int_ior=diamond,ext_ior='fused quartz'");
+    made("twosided:front=(blendbsdf:bsdf_0=(diffuse:reflectance='.5'),"
+         "bsdf_1=(roughconductor:material='Ca')),back=(mirror)");
     made("course_microfacet:material=none,lambda=exact,fresnel_at=half");
 }
 
@@ -76,6 +79,19 @@ static void what_is_wrong_is_named(void **state)
     refused("roughconductor:eta=1,k=1,material=Au", "either material", "");
     refused("roughconductor:material=Cq", "Cq", "Ca");
     refused("roughconductor:material='no/such.yml'", "no/such.yml", "");
+    refused("twosided", "expected a model", "front=(diffuse)");
+    refused("twosided:front=(dielectric)", "dielectric", "transmits");
+    refused("twosided:front=(diffus)", "front", "did you mean \"diffuse\"");
+    refused("twosided:front=(diffuse", "never closed", "(diffuse");
+    refused("twosided:front=diffuse", "in parentheses", "diffuse");
+    refused("twosided:front=(diffuse))", "not opened", "");
+    refused("twosided:front=((((((((((((((((((diffuse))))))))))))))))))",
+            "16 deep", "");
+    refused("blendbsdf:bsdf_0=(diffuse)", "bsdf_1 is missing", "");
+    refused("blendbsdf:bsdf_0=(mirror),bsdf_1=(mirror)", "same delta lobe", "");
+    refused("dielectric:int_ior=glas", "glas", "int_ior");
+    refused("dielectric:int_ior=0.01", "0.01", "[0.1, 100]");
+    refused("dielectric:int_ior=nan", "nan", "[0.1, 100]");
     refused("mirror:reflectance=0x1p+4", "= 16", "[0, 1]");
 }
 
@@ -204,8 +220,15 @@ static void many_at_once_are_the_same_bits(void **state)
     }
     const struct dirs wo = { wx, wy, wz }, wi = { x, y, z }, u = { ux, uy, uz };
     for (int t = 0; bsdf_types[t]; t++) {
-        struct bsdf *b = bsdf_new(bsdf_types[t]->name, &bands_default, &err);
-        assert_non_null(b);
+        const char *name = bsdf_types[t]->name;
+        const char *spec =
+            strcmp(name, "twosided") == 0 ? "twosided:front=(roughconductor)"
+            : strcmp(name, "blendbsdf") == 0
+                ? "blendbsdf:bsdf_0=(diffuse),bsdf_1=(roughdielectric)"
+                : name;
+        struct bsdf *b = bsdf_new(spec, &bands_default, &err);
+        if (!b)
+            fail_msg("%s", err.text);
         bsdf_eval_many(b, N, wo, wi, f);
         bsdf_pdf_many(b, N, wo, wi, pdf);
         bsdf_sample_many(b, N, wo, u, sample);
