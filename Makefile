@@ -182,7 +182,6 @@ demo: setup ## from measured calcium to a verdict and pictures, in build/demo/
 .PHONY: gallery
 gallery: all ## draw the README's pictures again
 	cd plots/gallery && ../../$(BIN)/bsdf-plot histogram '$(CALCIUM)' --wo 45,0 -o histogram.svg
-	cd plots/gallery && ../../$(BIN)/bsdf-plot lobe '$(CALCIUM)' --wo 45,0 -o lobe.svg
 
 # -- tests --------------------------------------------------------------------
 

@@ -1,0 +1,4 @@
+/* kinds.c - the list of plots */
+#include "plots/kinds.h"
+
+const struct plot *const plots[] = { &plot_lobe, &plot_histogram, NULL };

@@ -1,0 +1,555 @@
+/* test_plots.c - pictures that are whole, repeatable and right, and the tables
+ * and scripts beside them
+ *
+ * bsdf-plot is in the folder that BIN names, build/bin by default; the test
+ * runs in the root of the repository and writes only into a folder of its own.
+ */
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "bsdf/bsdf.h"
+#include "plots/axis.h"
+#include "plots/gnuplot.h"
+#include "plots/table.h"
+#include "tests/close.h"
+
+enum { OUTPUT_MAX = 1 << 16, COLUMNS_MAX = 16 };
+
+static char bin[4096], folder[64], output[OUTPUT_MAX];
+
+/* Runs a shell command with the program in PATH and the test's own folder as
+ * $T; its exit status, or -1 if it was killed; output has what it printed. */
+static int sh(const char *command)
+{
+    FILE *pipe = popen(command, "r");
+    assert_non_null(pipe);
+    const size_t n = fread(output, 1, OUTPUT_MAX - 1, pipe);
+    output[n] = '\0';
+    while (fgetc(pipe) != EOF)
+        ;
+    const int status = pclose(pipe);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/* Commands that all succeed, without a word on standard error. */
+static void quiet(const char *command)
+{
+    char line[4096];
+    snprintf(line, sizeof line, "{ set -e; %s; } 2>&1 >$T/out </dev/null",
+             command);
+    const int status = sh(line);
+    if (status != 0 || *output)
+        print_error("%s: status %d: %s\n", command, status, output);
+    assert_int_equal(status, 0);
+    assert_string_equal(output, "");
+}
+
+/* A wrong request: status 2, both parts on standard error, and no file. */
+static void refused(const char *command, const char *a, const char *b)
+{
+    char line[1024];
+    quiet("mkdir $T/refused");
+    snprintf(line, sizeof line,
+             "{ cd $T/refused && %s; } 2>&1 >$T/printed </dev/null", command);
+    const int status = sh(line);
+    if (status != 2)
+        print_error("%s: status %d: %s\n", command, status, output);
+    assert_int_equal(status, 2);
+    assert_has(output, a);
+    assert_has(output, b);
+    quiet("[ ! -s $T/printed ]; rmdir $T/refused");
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    const char *given = getenv("BIN");
+    if (!realpath(given ? given : "build/bin", bin))
+        return -1;
+    char path[8192];
+    snprintf(path, sizeof path, "%s:%s", bin, getenv("PATH"));
+    setenv("PATH", path, 1);
+    unsetenv("BSDF_IOR_PATH");
+    strcpy(folder, "/tmp/bsdf-plots-XXXXXX");
+    if (!mkdtemp(folder))
+        return -1;
+    return setenv("T", folder, 1);
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    return sh("rm -rf \"$T\"");
+}
+
+/* -- files ----------------------------------------------------------------- */
+
+static char *read_all(const char *name, size_t *size)
+{
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *f = fopen(path, "rb");
+    if (!f)
+        print_error("%s is not there\n", path);
+    assert_non_null(f);
+    assert_int_equal(fseek(f, 0, SEEK_END), 0);
+    *size = (size_t)ftell(f);
+    rewind(f);
+    char *bytes = malloc(*size + 1);
+    assert_non_null(bytes);
+    assert_int_equal(fread(bytes, 1, *size, f), *size);
+    bytes[*size] = '\0';
+    fclose(f);
+    return bytes;
+}
+
+static unsigned long big_endian(const char *bytes)
+{
+    unsigned long n = 0;
+    for (int i = 0; i < 4; i++)
+        n = n << 8 | (unsigned char)bytes[i];
+    return n;
+}
+
+static void assert_whole(const char *name)
+{
+    size_t size;
+    char *bytes = read_all(name, &size);
+    const char *form = strrchr(name, '.');
+    assert_true(size > 1000);
+    if (strcmp(form, ".svg") == 0) {
+        assert_memory_equal(bytes, "<?xml", 5);
+        assert_has(bytes, "<svg");
+        assert_has(bytes + size - 10, "</svg>");
+    } else if (strcmp(form, ".png") == 0) {
+        assert_memory_equal(bytes, "\x89PNG\r\n\x1a\n", 8);
+        assert_memory_equal(bytes + 12, "IHDR", 4);
+        assert_int_equal(big_endian(bytes + 16), 1600);
+        assert_true(big_endian(bytes + 20) > 600);
+        assert_memory_equal(bytes + size - 8, "IEND", 4);
+    } else {
+        assert_memory_equal(bytes, "%PDF", 4);
+        assert_has(bytes + size - 8, "%%EOF");
+        assert_non_null(memmem(bytes, size, "(D:20000101000000", 17));
+    }
+    free(bytes);
+}
+
+/* A table without its comments, row by row; NaN where it says so. */
+struct table {
+    size_t rows, columns;
+    double *value;
+};
+
+static double table_at(const struct table *t, size_t row, size_t column)
+{
+    return t->value[row * t->columns + column];
+}
+
+static struct table table_read(const char *name)
+{
+    struct table t = { 0, 0, NULL };
+    size_t size, room = 0;
+    char *bytes = read_all(name, &size), *rest = bytes;
+    for (char *line; (line = strsep(&rest, "\n")) && rest;) {
+        size_t n = 0;
+        if (*line == '\0') /* the next block is another table */
+            break;
+        if (*line == '#')
+            continue;
+        double row[COLUMNS_MAX];
+        for (char *end; *line && n < COLUMNS_MAX; line = end + (*end == '\t')) {
+            row[n++] = strtod(line, &end);
+            assert_true(end != line);
+        }
+        assert_true(t.rows == 0 || n == t.columns);
+        t.columns = n;
+        if (t.rows == room) {
+            room = room ? 2 * room : 1024;
+            t.value = realloc(t.value, room * n * sizeof *t.value);
+            assert_non_null(t.value);
+        }
+        memcpy(t.value + t.rows++ * n, row, n * sizeof *row);
+    }
+    free(bytes);
+    assert_true(t.rows > 0);
+    return t;
+}
+
+/* -- the pictures ---------------------------------------------------------- */
+
+static const char *const specs[] = {
+    "roughconductor:material=Ca,alpha=0.25",
+    "roughconductor:material=Cu,alpha_u=0.3,alpha_v=0.05,distribution=ggx",
+    "diffuse:reflectance=0.2/0.5/0.8",
+};
+static const char *const forms[] = { "svg", "pdf", "png" };
+static const char *const kinds[] = { "lobe", "histogram" };
+
+static void every_kind_in_every_form_is_whole_and_redraws_itself(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 18; i++) {
+        const char *kind = kinds[i % 2], *form = forms[i / 2 % 3];
+        char line[1024], name[32];
+        snprintf(name, sizeof name, "f%d.%s", i, form);
+        snprintf(
+            line, sizeof line,
+            "bsdf-plot %s %s --wo 57.3,%d --samples 30000 -o $T/%s >$T/made",
+            kind, specs[i / 6], 31 * i, name);
+        quiet(line);
+        assert_whole(name);
+        snprintf(line, sizeof line,
+                 "printf '%%s\\n' $T/f%d.tsv $T/f%d.gp $T/%s | cmp - $T/made; "
+                 "cd $T; mv %s first; gnuplot f%d.gp",
+                 i, i, name, name, i);
+        quiet(line);
+        size_t size, again;
+        char *a = read_all("first", &size), *b = read_all(name, &again);
+        char *date = memmem(b, again, "/CreationDate (D:", 17);
+        if (date)
+            memcpy(date + 17, "20000101000000", 14);
+        if (strcmp(form, "pdf") != 0 || getenv("TZ")) /* has a time zone */
+            assert_int_equal(size, again);
+        if (size == again)
+            assert_memory_equal(a, b, size);
+        free(a);
+        free(b);
+    }
+}
+
+static void the_same_request_gives_the_same_bytes(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        char line[1024];
+        snprintf(line, sizeof line,
+                 "cd $T; for n in 1 2; do mkdir again; cd again; TZ=XYZ$n "
+                 "OMP_NUM_THREADS=$n bsdf-plot %s %s --wo 70,10 --seed 7 "
+                 "--samples 30000 -o x.%s; cd ..; mv again again$n; done; "
+                 "diff -r again1 again2 >&2; rm -r again1 again2",
+                 kinds[i % 2], specs[i], forms[i]);
+        quiet(line);
+    }
+}
+
+static void another_seed_gives_other_samples(void **state)
+{
+    (void)state;
+    quiet("cd $T; for s in 1 2; do bsdf-plot histogram diffuse --wo 20,0 "
+          "--samples 5000 --seed $s -o s$s.svg; done; ! cmp -s s1.tsv s2.tsv");
+}
+
+static void names_and_specs_are_nothing_but_text(void **state)
+{
+    (void)state;
+    static const char line[] =
+        "ca=$(ls $PWD/data/ior/Ca/*.yml); d=\"$T/a \\\"b\\\" 'c'\"; "
+        "mkdir \"$d\"; cd \"$d\"; "
+        "m=$(printf 'm `touch pwned` \"; system(\"touch pwned\") "
+        "#\\n\\\\ $1 @x %%s <b> {a}_b \\377.yml'); cp \"$ca\" \"$m\"; "
+        "for f in '-x.svg' '|touch pwned.svg' '<touch pwned.pdf' "
+        "'`touch pwned` $x @y #1.png' \"$(printf 'new\\nline\\\\.svg')\"; "
+        "do bsdf-plot lobe \"roughconductor:material='$m'\" --wo 45,0 "
+        "-o \"$f\"; [ -s \"$f\" ] || echo no $f >&2; done; "
+        "bsdf-plot lobe diffuse --wo 45,0 -o \"$d/y.svg\"; "
+        "[ ! -e pwned ] || echo pwned >&2; cp y.svg $T; cd $T; rm -r a*";
+    quiet(line);
+    assert_whole("y.svg");
+}
+
+/* -- what goes wrong ------------------------------------------------------- */
+
+static void without_gnuplot_the_table_and_the_script_are_made(void **state)
+{
+    (void)state;
+    char line[8192];
+    snprintf(line, sizeof line,
+             "mkdir $T/none && cd $T/none && { PATH=/nonexistent %s/bsdf-plot "
+             "lobe diffuse --wo 10,0 -o x.svg 2>&1 >$T/made; }",
+             bin);
+    assert_int_equal(sh(line), 2);
+    assert_has(output, "gnuplot");
+    assert_has(output, "PATH");
+    quiet(
+        "cd $T; printf 'x.tsv\\nx.gp\\n' | cmp - made; cd none; gnuplot x.gp; "
+        "[ \"$(ls | tr '\\n' ' ')\" = 'x.gp x.svg x.tsv ' ]; rm -r $T/none");
+}
+
+static void gnuplots_own_words_are_passed_on(void **state)
+{
+    (void)state;
+    quiet("mkdir $T/fake; cd $T/fake; printf '#!/bin/sh\\necho its words >&2\\n"
+          "exit 3\\n' >gnuplot; chmod +x gnuplot");
+    assert_int_equal(sh("cd $T/fake; { PATH=$PWD:$PATH bsdf-plot lobe diffuse "
+                        "--wo 10,0; } 2>&1 >/dev/null"),
+                     2);
+    assert_has(output, "its words");
+    assert_has(output, "status 3");
+    quiet("cd $T/fake; [ ! -e lobe.svg ]; [ -s lobe.gp ]; rm -r $T/fake");
+}
+
+static void wrong_requests_are_refused(void **state)
+{
+    (void)state;
+    refused("bsdf-plot lobe diffuse --wo 1,0 -o x.jpg", "\".jpg\"",
+            ".svg, .pdf or .png");
+    refused("bsdf-plot lobe diffuse --wo 1,0 -o x", "no extension", ".svg");
+    refused("bsdf-plot lobe diffuse --wo 1,0 -o .svg", "name before", ".svg");
+    refused("bsdf-plot lobe diffuse --wo 1,0 -o none/x.svg", "none/x.svg",
+            "No such file");
+    refused("bsdf-plot lobe diffuse --wo 1,0 -o $T/out/x.svg", "out/x.svg",
+            "Not a directory");
+    refused("bsdf-plot lobes diffuse --wo 1,0", "\"lobes\"",
+            "did you mean \"lobe\"?");
+    refused("bsdf-plot none diffuse --wo 1,0", "\"none\"", "lobe, histogram");
+    refused("bsdf-plot", "kind", "SPEC");
+    refused("bsdf-plot lobe", "lobe", "SPEC");
+    refused("bsdf-plot lobe diffuse", "--wo", "degrees");
+    refused("bsdf-plot lobe diffuse x --wo 1,0", "\"x\"", "too many");
+    refused("bsdf-plot lobe diffuse:reflectance=2 --wo 1,0", "reflectance",
+            "[0, 1]");
+    refused("bsdf-plot lobe diffuse --wo 120,0", "120", "nothing to draw");
+    refused("bsdf-plot histogram diffuse --wo 120,0", "120", "nothing to draw");
+    refused("bsdf-plot histogram mirror --wo 45,0", "delta", "no density");
+    refused("bsdf-plot histogram diffuse --wo 45,0 --samples 10", "--samples",
+            "[1000");
+}
+
+static void a_script_in_the_way_leaves_nothing(void **state)
+{
+    (void)state;
+    assert_int_equal(sh("mkdir -p $T/way/x.gp/y && cd $T/way && { bsdf-plot "
+                        "lobe diffuse --wo 10,0 -o x.svg 2>&1 >$T/out; }"),
+                     2);
+    assert_has(output, "x.gp");
+    quiet("cd $T/way; rm -r x.gp; [ -z \"$(ls)\" ]; rmdir $T/way");
+}
+
+/* -- the numbers ----------------------------------------------------------- */
+
+struct view {
+    const char *spec, *wo;
+    double theta_deg, phi_deg;
+};
+static const struct view views[] = {
+    { "roughconductor:material=Ca,alpha=0.001", "45,0", 45, 0 },
+    { "roughconductor:material=Ca,alpha=0.0001", "89.9,20", 89.9, 20 },
+    { "roughconductor:material=Au,alpha=1,distribution=ggx", "0,0", 0, 180 },
+    { "course_microfacet:material=Au,alpha=0.02", "85,-70", 85, -70 },
+};
+
+/* The curve through the table, against the model at angles drawn around the
+ * mirror direction; how much the table's largest value is above all of them. */
+static void assert_traced(const struct view *v, const struct table *t)
+{
+    struct bsdf *b = bsdf_new(v->spec, &bands_default, NULL);
+    assert_non_null(b);
+    const struct vec3 wo = dir_from_degrees(v->theta_deg, v->phi_deg);
+    double most[7] = { 0 };
+    for (size_t i = 0; i < t->rows; i++)
+        for (size_t c = 1; c < 7; c++)
+            most[c] = fmax(most[c], table_at(t, i, c));
+    for (int k = 0; k < 20000; k++) {
+        /* from -90 to 90, a fourth of them within half a degree */
+        const double share = fmod(0.61803398874989485 * k, 1);
+        const double theta =
+            k % 4 ? 180 * share - 90 : fmin(v->theta_deg + share - 0.5, 90);
+        size_t i = 1;
+        while (table_at(t, i, 0) < theta)
+            i++;
+        const double x0 = table_at(t, i - 1, 0), x1 = table_at(t, i, 0);
+        const struct vec3 wi = dir_from_degrees(theta, v->phi_deg + 180);
+        const struct spectrum f = bsdf_eval(b, wo, wi);
+        for (size_t c = 1; c < 7; c++) {
+            const double y0 = table_at(t, i - 1, c), y1 = table_at(t, i, c);
+            const double line = y0 + (y1 - y0) * (theta - x0) / (x1 - x0);
+            const double truth = f.band[(c - 1) % 3] * (c > 3 ? fabs(wi.z) : 1);
+            assert_at_most(truth, most[c] * 1.001);
+            if (theta < 89.99999) /* f may end with a jump */
+                assert_close(line / most[c], truth / most[c], 2e-3);
+        }
+    }
+    bsdf_free(b);
+}
+
+static void a_lobe_follows_the_model_however_narrow(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
+        char line[512];
+        snprintf(line, sizeof line,
+                 "bsdf-plot lobe %s --wo %s -o $T/lobe%zu.svg", views[i].spec,
+                 views[i].wo, i);
+        quiet(line);
+        snprintf(line, sizeof line, "lobe%zu.tsv", i);
+        const struct table t = table_read(line);
+        assert_int_equal(t.columns, 7);
+        assert_true(t.rows < 10000);
+        assert_traced(&views[i], &t);
+        free(t.value);
+    }
+}
+
+/* Of a sound model: counts spread about what is expected as they should. */
+static void residuals_are_those_of_chance(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
+        char line[512];
+        snprintf(line, sizeof line,
+                 "bsdf-plot histogram %s --wo %s -o $T/h%zu.svg --samples 3e5",
+                 views[i].spec, views[i].wo, i);
+        quiet(line);
+        snprintf(line, sizeof line, "h%zu.tsv", i);
+        const struct table t = table_read(line);
+        assert_int_equal(t.columns, 9);
+        double observed = 0, expected = 0, squares = 0, full = 0, worst = 0;
+        for (size_t k = 0; k < t.rows; k++) {
+            const double o = table_at(&t, k, 3), e = table_at(&t, k, 4);
+            const double r = table_at(&t, k, 8);
+            observed += o;
+            expected += e;
+            assert_true(isnan(r) == (e < 5));
+            worst = fmax(worst, table_at(&t, k, 5) / sqrt(e + 1));
+            if (isnan(r))
+                continue;
+            assert_close(r, (o - e) / sqrt(e), 1e-9);
+            squares += r * r;
+            full++;
+        }
+        assert_true(full > 300);
+        assert_close(squares / full, 1, 5 * sqrt(2 / full));
+        assert_close(observed, expected, 5 * sqrt(expected));
+        assert_true(expected > 0.4 * 3e5);
+        assert_at_most(worst, 0.3);
+        free(t.value);
+    }
+}
+
+/* All of diffuse is in sight: mass 1, solid angle 2 pi. */
+static void a_whole_hemisphere_adds_up(void **state)
+{
+    (void)state;
+    quiet("bsdf-plot histogram diffuse --wo 33,120 -o $T/whole.svg");
+    const struct table t = table_read("whole.tsv");
+    double solid = 0, observed = 0, expected = 0;
+    for (size_t k = 0; k < t.rows; k++) {
+        solid += table_at(&t, k, 2);
+        observed += table_at(&t, k, 3);
+        expected += table_at(&t, k, 4);
+    }
+    free(t.value);
+    assert_close(solid, 2 * PI, 1e-4);
+    assert_close(observed, 1e6, 0);
+    assert_close(expected, 1e6, 2);
+}
+
+static void a_mirror_is_an_arrow_with_its_weight(void **state)
+{
+    (void)state;
+    quiet("bsdf-plot lobe mirror:reflectance=0.25/0.5/1 --wo 45,0 -o $T/m.svg; "
+          "grep -A 2 'single directions' $T/m.tsv | tail -n 1 >$T/row; "
+          "printf '45\\t1\\t0.25\\t0.5\\t1\\n' | cmp - $T/row");
+    quiet("grep -q 'probability 1, weight 0.25, 0.5, 1' $T/m.svg");
+}
+
+/* -- the parts ------------------------------------------------------------- */
+
+static void a_string_of_a_script_is_what_it_was(void **state)
+{
+    (void)state;
+    char text[300], path[512];
+    size_t n = 0;
+    for (int c = 1; c < 128; c++)
+        text[n++] = (char)c;
+    snprintf(text + n, sizeof text - n, "$1 \"7\" `8` '9' \\0 ω€");
+    snprintf(path, sizeof path, "%s/string.gp", folder);
+    FILE *script = fopen(path, "w");
+    assert_non_null(script);
+    fputs("set print \"-\"\nprint ", script);
+    gnuplot_string(script, text);
+    fputc('\n', script);
+    fclose(script);
+    assert_int_equal(sh("gnuplot -d $T/string.gp"), 0);
+    n = strlen(output);
+    assert_true(n > 0);
+    output[n - 1] = '\0';
+    assert_string_equal(output, text);
+}
+
+static void plain_text_is_one_line_of_utf8(void **state)
+{
+    (void)state;
+    static const char *const pairs[][2] = {
+        { "alpha_u=0.3, 'ä€𝛼'", "alpha_u=0.3, 'ä€𝛼'" },
+        { "a\tb\n\x7f", "a\\x09b\\x0a\\x7f" },
+        { "\xff\xc3", "\\xff\\xc3" },                            /* cut off */
+        { "\xc0\xaf\xe0\x80\x80", "\\xc0\\xaf\\xe0\\x80\\x80" }, /* too long */
+        { "\xed\xa0\x80", "\\xed\\xa0\\x80" },          /* a surrogate */
+        { "\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80" }, /* past the end */
+        { "\xc2\x85\xe2\x80\xa8", "\\xc2\\x85\\xe2\\x80\\xa8" }, /* new lines */
+    };
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        char *plain = table_plain(pairs[i][0]);
+        assert_non_null(plain);
+        assert_string_equal(plain, pairs[i][1]);
+        free(plain);
+    }
+}
+
+static void axes_are_easy_to_read(void **state)
+{
+    (void)state;
+    char unit[32];
+    assert_close(axis_step(0.47, 5), 0.1, 1e-15);
+    assert_close(axis_step(2.3, 5), 0.5, 1e-15);
+    assert_close(axis_step(10, 5), 2, 1e-15);
+    assert_close(axis_step(1.1e-5, 5), 2.5e-6, 1e-20);
+    assert_int_equal(axis_exponent(1000), 3);
+    assert_int_equal(axis_exponent(999), 0);
+    assert_int_equal(axis_exponent(0.001), -3);
+    assert_int_equal(axis_exponent(0), 0);
+    assert_int_equal(axis_exponent(INFINITY), 0);
+    axis_unit(unit, sizeof unit, 0, "1/sr");
+    assert_string_equal(unit, "1/sr");
+    axis_unit(unit, sizeof unit, 12, "1/sr");
+    assert_string_equal(unit, "10¹²/sr");
+    axis_unit(unit, sizeof unit, -6, "deg");
+    assert_string_equal(unit, "10⁻⁶ deg");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        { "every kind in every form is whole and redraws itself",
+          every_kind_in_every_form_is_whole_and_redraws_itself },
+        { "the same request gives the same bytes",
+          the_same_request_gives_the_same_bytes },
+        { "another seed gives other samples",
+          another_seed_gives_other_samples },
+        { "names and specs are nothing but text",
+          names_and_specs_are_nothing_but_text },
+        { "without gnuplot the table and the script are made",
+          without_gnuplot_the_table_and_the_script_are_made },
+        { "gnuplot's own words are passed on",
+          gnuplots_own_words_are_passed_on },
+        { "wrong requests are refused", wrong_requests_are_refused },
+        { "a script in the way leaves nothing",
+          a_script_in_the_way_leaves_nothing },
+        { "a lobe follows the model however narrow",
+          a_lobe_follows_the_model_however_narrow },
+        { "residuals are those of chance", residuals_are_those_of_chance },
+        { "a whole hemisphere adds up", a_whole_hemisphere_adds_up },
+        { "a mirror is an arrow with its weight",
+          a_mirror_is_an_arrow_with_its_weight },
+        { "a string of a script is what it was",
+          a_string_of_a_script_is_what_it_was },
+        { "plain text is one line of UTF-8", plain_text_is_one_line_of_utf8 },
+        { "axes are easy to read", axes_are_easy_to_read },
+    };
+    return cmocka_run_group_tests_name("plots", tests, setup, teardown);
+}
