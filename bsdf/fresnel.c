@@ -34,7 +34,7 @@ double fresnel_conductor(double cos_i, double eta, double k)
     if (!(sum_p + diff_p > 0))
         return rs; /* s = 0: both polarisations are one */
     const double p = s2 - c * a;
-    return rs * (1 + (p * p + c * c * b * b) / (sum_p + diff_p)) / 2;
+    return fmin(rs * (1 + (p * p + c * c * b * b) / (sum_p + diff_p)) / 2, 1);
 }
 
 double fresnel_conductor_approx(double cos_i, double eta, double k)

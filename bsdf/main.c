@@ -192,6 +192,10 @@ static bool eval_lines(const struct bsdf *b, FILE *in, const char *name,
         double angle[4] = { 0 };
         struct err why;
         const size_t length = strlen(line);
+        if (length == 0 ||
+            (line[length - 1] != '\n' && !feof(in) && length + 1 < sizeof line))
+            return err_set(err, "%s:%llu: a zero byte; expected text", name,
+                           at);
         if (length + 1 == sizeof line && line[length - 1] != '\n')
             return err_set(err,
                            "%s:%llu: the line is longer than %zu "

@@ -1,7 +1,9 @@
 /* outfile.h - a file that is there whole or not at all
  *
  * Written under a temporary name beside the final one and renamed at the end,
- * so that a failure, an interruption or a full disk leaves what was there.
+ * so that a failure, an interruption or a full disk leaves what was there.  A
+ * link is followed, and what is no regular file (a device, a pipe) is written
+ * as it stands, without a temporary.
  */
 #ifndef BSDF_OUTFILE_H
 #define BSDF_OUTFILE_H
@@ -12,8 +14,8 @@
 #include "bsdf/err.h"
 
 struct outfile {
-    FILE *stream; /* write here */
-    char *path, *temporary;
+    FILE *stream;           /* write here */
+    char *path, *temporary; /* temporary is NULL for a device */
 };
 
 /** Opens; false and the reason (path and system's word) if it cannot. */

@@ -22,13 +22,13 @@ static void albedo(const char *spec, double theta_deg, double out[BANDS_MAX])
 {
     struct bsdf *b = made(spec);
     struct subject s;
-    struct estimate e[BANDS_MAX];
+    struct estimate e[BANDS_MAX], unsampled;
     struct err err;
     struct plan plan = plan_default;
     plan.samples = 1000;
     assert_true(
         subject_init(&s, b, dir_from_degrees(theta_deg, 0), &plan, &err));
-    subject_albedo(&s, e);
+    subject_albedo(&s, e, &unsampled);
     for (int i = 0; i < BANDS_MAX; i++) {
         assert_at_most(e[i].error, 1e-6);
         out[i] = e[i].value;

@@ -20,7 +20,7 @@ static void degree_eleven_is_exact(void **state)
     struct estimate e = { 0, 0 };
     long budget = 1000;
     quadrature(polynomials_are_exact, NULL, 1, (struct rectangle){ 0, 1, 0, 2 },
-               1e-9, &budget, &e);
+               1e-9, &budget, NULL, 0, &e);
     assert_close(e.value, 256, 1e-12);
     assert_int_equal(budget, 1000 - 5 * 36);
 }

@@ -66,17 +66,18 @@ static struct outcome test(const struct cell *cell, size_t n, uint64_t samples)
     struct outcome o = { .degrees = -1, .worst = n };
     struct cell pool[2] = { { { 0, 0 }, 0 } };
     for (size_t i = 0; i < n; i++) {
-        const double expected = cell[i].share.value * (double)samples;
+        /* A share that rounding made negative is as good as 0. */
+        struct cell c = cell[i];
+        c.share.value = fmax(c.share.value, 0);
+        const double expected = c.share.value * (double)samples;
         if (expected < pool_below)
-            cell_add(&pool[expected >= pool_apart_below], cell[i]);
+            cell_add(&pool[expected >= pool_apart_below], c);
         else
-            outcome_add(&o, cell[i], i, (double)samples);
+            outcome_add(&o, c, i, (double)samples);
     }
     for (int k = 0; k < 2; k++) {
         o.p_pool[k] = 1;
         if (pool[k].share.value * (double)samples < pool_below) {
-            /* A share that rounding made negative is as good as 0. */
-            pool[k].share.value = fmax(pool[k].share.value, 0);
             o.p_pool[k] =
                 pvalue_binomial(pool[k].count, samples, pool[k].share);
         } else {
@@ -95,7 +96,7 @@ static void run(const struct subject *s, struct verdict *v)
     const size_t others = 1 + (size_t)survey->deltas;
     if (!(bsdf_claims(s->bsdf).lobes & ~(unsigned)BSDF_DELTA)) {
         v->applies = false;
-        snprintf(v->note, sizeof v->note, "only delta lobes");
+        verdict_note(v, "only delta lobes");
         return;
     }
     struct cell *fine = calloc(bins + others, sizeof *fine);
@@ -103,7 +104,7 @@ static void run(const struct subject *s, struct verdict *v)
     v->unit = "sigma";
     if (!fine || !coarse) {
         v->value = NAN;
-        snprintf(v->note, sizeof v->note, "out of memory");
+        verdict_note(v, "out of memory");
         goto done;
     }
     for (size_t i = 0; i < bins; i++) {
@@ -124,17 +125,18 @@ static void run(const struct subject *s, struct verdict *v)
     const double p[] = { f.p, f.p_pool[0], f.p_pool[1], c.p };
     v->p = pvalue_best(p, 4);
     if (survey->stray > 0 || isnan(survey->total.value))
-        v->p = pvalue_binomial(1, 1, (struct estimate){ 0, 0 });
+        v->p = pvalue_impossible;
     if (f.worst < bins) {
         v->has_wi = true;
         v->wi = patch_centre(partition_patch(survey->partition, f.worst));
     }
-    snprintf(v->note, sizeof v->note,
-             "fine %.1f on %ld, coarse %.1f on %ld degrees of freedom, nearly "
-             "empty bins p %.2g, worst bin %+.1f sigma%s",
-             f.statistic, f.degrees, c.statistic, c.degrees,
-             fmin(f.p_pool[0], f.p_pool[1]), f.worst_sigma,
-             survey->stray > 0 ? ", samples that are no directions" : "");
+    verdict_note(
+        v,
+        "fine %.1f on %ld, coarse %.1f on %ld degrees of freedom, nearly "
+        "empty bins p %.2g, worst bin %+.1f sigma%s",
+        f.statistic, f.degrees, c.statistic, c.degrees,
+        fmin(f.p_pool[0], f.p_pool[1]), f.worst_sigma,
+        survey->stray > 0 ? ", samples that are no directions" : "");
 done:
     free(fine);
     free(coarse);

@@ -39,7 +39,7 @@ static bool fault(struct verdict *v, const struct delta *d, const char *what,
         v->has_wi = true;
         v->wi = d->wi;
     }
-    snprintf(v->note, sizeof v->note, "%s (%g)", what, value);
+    verdict_note(v, "%s (%g)", what, value);
     return false;
 }
 
@@ -75,7 +75,7 @@ static void run(const struct subject *s, struct verdict *v)
     const unsigned lobes = bsdf_claims(s->bsdf).lobes;
     if (!(lobes & BSDF_DELTA) && survey->deltas == 0) {
         v->applies = false;
-        snprintf(v->note, sizeof v->note, "no delta lobe");
+        verdict_note(v, "no delta lobe");
         return;
     }
     double p[DELTAS_MAX] = { 1 };
@@ -87,22 +87,22 @@ static void run(const struct subject *s, struct verdict *v)
     }
     if (s->wo.z < 0 && !bsdf_claims(s->bsdf).two_sided && survey->deltas == 0) {
         v->applies = false;
-        snprintf(v->note, sizeof v->note, "one-sided");
+        verdict_note(v, "one-sided");
         return;
     }
     /* A mirror that is all there is always reflects. */
-    if (lobes == BSDF_DELTA_REFLECTION && survey->deltas == 0) {
+    if (lobes == BSDF_DELTA_REFLECTION && survey->deltas == 0 && s->wo.z != 0) {
         fault(v, NULL, "the claimed delta reflection was never drawn", 1);
         return;
     }
     for (int k = 0; k < survey->deltas; k++)
         if (!delta_judge(s, &survey->delta[k], lobes, &p[k], v))
             return;
-    /* None at all: beyond the critical angle, say. */
-    v->p = survey->deltas ? pvalue_best(p, survey->deltas) : 1;
-    snprintf(v->note, sizeof v->note, "%d direction%s, the first %llu times",
-             survey->deltas, survey->deltas == 1 ? "" : "s",
-             (unsigned long long)(survey->deltas ? survey->delta[0].count : 0));
+    v->p = pvalue_best(p, survey->deltas); /* 1 beyond the critical angle */
+    verdict_note(
+        v, "%d direction%s, the first %llu times", survey->deltas,
+        survey->deltas == 1 ? "" : "s",
+        (unsigned long long)(survey->deltas ? survey->delta[0].count : 0));
 }
 
 const struct check check_delta = {

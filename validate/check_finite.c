@@ -3,7 +3,8 @@
  * f and pdf are finite and not negative, a sample is a unit direction with a
  * finite weight and a density that is not 0, to the edges of the domain: the
  * normal, cosines of 1e-8, the horizon, below it, wi = wo, wi = -wo, and random
- * numbers at both ends of [0, 1).  value counts what is not.
+ * numbers at both ends of [0, 1); and the same when asked again.  value counts
+ * what is not.
  */
 #include "validate/checks.h"
 
@@ -12,7 +13,6 @@
 struct tally {
     const struct subject *s;
     struct verdict *v;
-    double unit_error; /* of the length of a sampled direction */
 };
 
 static void bad(struct tally *t, struct vec3 wo, struct vec3 wi,
@@ -25,7 +25,7 @@ static void bad(struct tally *t, struct vec3 wo, struct vec3 wi,
     v->wo = wo;
     v->wi = wi;
     v->has_wi = true;
-    snprintf(v->note, sizeof v->note, "first: %s = %g", what, value);
+    verdict_note(v, "first: %s = %g", what, value);
 }
 
 static bool good(double x)
@@ -50,6 +50,7 @@ static void sample_check(struct tally *t, struct vec3 wo, struct vec3 u)
     char what[80];
     snprintf(what, sizeof what, "for u = (%.17g, %.17g) the sample's", u.x,
              u.y);
+    const struct bsdf_sample again = bsdf_sample(t->s->bsdf, wo, u);
     char name[128];
     bool carries = false;
     for (int b = 0; b < BANDS_MAX; b++) {
@@ -62,8 +63,11 @@ static void sample_check(struct tally *t, struct vec3 wo, struct vec3 u)
     if (!good(a.pdf) || (carries && !(a.pdf > 0)))
         bad(t, wo, a.wi, name, a.pdf);
     snprintf(name, sizeof name, "%s |wi|", what);
-    if (a.pdf > 0 && !(fabs(vec3_length(a.wi) - 1) <= t->unit_error))
+    if (a.pdf > 0 && !(fabs(vec3_length(a.wi) - 1) <= subject_unit_error))
         bad(t, wo, a.wi, name, vec3_length(a.wi));
+    snprintf(name, sizeof name, "%s pdf, another one when asked again,", what);
+    if (again.pdf != a.pdf || again.wi.x != a.wi.x || again.wi.z != a.wi.z)
+        bad(t, wo, a.wi, name, a.pdf);
 }
 
 static void run(const struct subject *s, struct verdict *v)
@@ -90,7 +94,7 @@ static void run(const struct subject *s, struct verdict *v)
     enum { EDGES = sizeof edge / sizeof *edge, ENDS = 6 };
     const double end[ENDS] = { 0,   0x1p-53,     0x1p-30,
                                0.5, 1 - 0x1p-24, 1 - 0x1p-53 };
-    struct tally t = { s, v, 1e-9 };
+    struct tally t = { s, v };
     v->unit = "bad values";
     v->limit = 0;
     for (int o = 0; o < EDGES; o++) {
@@ -109,10 +113,15 @@ static void run(const struct subject *s, struct verdict *v)
         if (a.pdf > 0)
             value_check(&t, wo, a.wi);
     }
+    if (s->survey.bad > 0) {
+        const struct bsdf_sample *a = &s->survey.first_bad;
+        bad(&t, wo, a->wi, "one of the drawn samples has the pdf", a->pdf);
+        v->value += (double)s->survey.bad - 1;
+    }
     if (v->value == 0)
-        snprintf(v->note, sizeof v->note,
-                 "%d pairs of edges, %d samples at edges, 1024 drawn",
-                 EDGES * EDGES, EDGES * ENDS * ENDS);
+        verdict_note(v, "%d pairs of edges, %d samples at edges, %llu drawn",
+                     EDGES * EDGES, EDGES * ENDS * ENDS,
+                     (unsigned long long)s->survey.samples);
 }
 
 const struct check check_finite = {

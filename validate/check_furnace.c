@@ -28,22 +28,25 @@ static void run(const struct subject *s, struct verdict *v)
 {
     if (!bsdf_has_facets(s->bsdf) || !(s->wo.z > 0)) {
         v->applies = false;
-        snprintf(v->note, sizeof v->note, "the model shows no facets");
+        verdict_note(v, "%s",
+                     bsdf_has_facets(s->bsdf) ? "not seen from above"
+                                              : "the model shows no facets");
         return;
     }
     const double scale = bsdf_facet_g1(s->bsdf, s->wo) / s->wo.z;
     const struct estimate area = hemisphere(projected, s);
-    const struct estimate seen = hemisphere_facing(visible, s, s->wo);
+    const struct estimate seen =
+        hemisphere_facing(visible, s, s->wo, 1e-11 * fmin(1, 1 / scale));
     const double off_area = fabs(area.value - 1);
     const double off_seen = fabs(seen.value * scale - 1);
     v->limit = 1e-6;
-    v->value = off_area > off_seen ? off_area : off_seen;
-    v->error = off_area > off_seen ? area.error : seen.error * scale;
+    const bool worse = off_area > off_seen || isnan(off_area);
+    v->value = worse ? off_area : off_seen;
+    v->error = worse ? area.error : seen.error * scale;
     v->passed = v->error <= v->limit;
-    snprintf(v->note, sizeof v->note,
-             "int D cos = %.9f, G1 int D max(0, wo.m) / cos_o = %.9f%s",
-             area.value, seen.value * scale,
-             v->passed ? "" : ", undecided: error above 1e-6");
+    verdict_note(v, "int D cos = %.9f, G1 int D max(0, wo.m) / cos_o = %.9f%s",
+                 area.value, seen.value * scale,
+                 v->passed ? "" : ", undecided: error above 1e-6");
 }
 
 const struct check check_furnace = {

@@ -2,13 +2,17 @@
  *
  * The integral, with its error, and the probabilities of the delta directions
  * leave a probability of refusal; the number of refused samples must be
- * binomial with it.  An integral above 1 is impossible whatever was drawn.
+ * binomial with it.  An integral above 1 is impossible whatever was drawn, and
+ * one that is not known to 1e-4 fails.
  */
 #include "validate/checks.h"
 
 #include <stdio.h>
 
 #include "validate/pvalue.h"
+
+/* A bound this large would excuse what a million samples show. */
+static const double error_limit = 1e-4;
 
 static void run(const struct subject *s, struct verdict *v)
 {
@@ -18,12 +22,17 @@ static void run(const struct subject *s, struct verdict *v)
     const struct estimate rounded = { q.value, q.error + 1e-12 };
     v->unit = "sigma";
     v->p = pvalue_binomial(survey->refused, survey->samples, rounded);
-    if (isnan(q.value))
-        v->p = pvalue_binomial(0, 1, (struct estimate){ -1, 0 });
-    snprintf(v->note, sizeof v->note,
-             "integral %.9f +- %.1e, refused share %.6f, sum %.6f", 1 - q.value,
-             q.error, (double)survey->refused / (double)survey->samples,
-             1 - q.value + (double)survey->refused / (double)survey->samples);
+    v->error = q.error;
+    if (!(q.error <= error_limit)) { /* a NaN value has a NaN error */
+        v->p = pvalue_impossible;
+        verdict_note(v, "integral %.6g +- %.1e: undecided, error above %g",
+                     1 - q.value, q.error, error_limit);
+        return;
+    }
+    verdict_note(
+        v, "integral %.9f +- %.1e, refused share %.6f, sum %.6f", 1 - q.value,
+        q.error, (double)survey->refused / (double)survey->samples,
+        1 - q.value + (double)survey->refused / (double)survey->samples);
 }
 
 const struct check check_pdf = {

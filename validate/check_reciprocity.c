@@ -40,12 +40,10 @@ static void pair(const struct subject *s, struct verdict *v, struct vec3 wi)
         v->limit = limit;
         v->has_wi = true;
         v->wi = wi;
-        int used = snprintf(v->note, sizeof v->note, "f there / f back =");
+        verdict_note(v, "f there / f back =");
         for (int c = 0; c < bands; c++)
-            used += snprintf(v->note + used, sizeof v->note - (size_t)used,
-                             "%s%.4f", c ? "/" : " ",
-                             there.band[c] * n_i * n_i /
-                                 (back.band[c] * n_o * n_o));
+            verdict_add(v, "%s%.5g", c ? "/" : " ",
+                        there.band[c] * n_i * n_i / (back.band[c] * n_o * n_o));
     }
 }
 
@@ -81,8 +79,7 @@ static void delta_pair(const struct subject *s, struct verdict *v,
         v->value = off;
         v->has_wi = true;
         v->wi = d->wi;
-        snprintf(v->note, sizeof v->note,
-                 "delta, as energy: %.6g there, %.6g back", x, y);
+        verdict_note(v, "delta, as energy: %.6g there, %.6g back", x, y);
     }
 }
 
@@ -91,7 +88,7 @@ static void run(const struct subject *s, struct verdict *v)
     const struct bsdf_claims claims = bsdf_claims(s->bsdf);
     if (!claims.reciprocal) {
         v->applies = false;
-        snprintf(v->note, sizeof v->note, "declared not reciprocal");
+        verdict_note(v, "declared not reciprocal");
         return;
     }
     static const double theta_deg[] = { 0,    5,  13, 30,   45,   60,

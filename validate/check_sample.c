@@ -22,8 +22,7 @@ static void keep(struct verdict *v, struct vec3 wi, const char *what,
     v->limit = limit;
     v->wi = wi;
     v->has_wi = true;
-    snprintf(v->note, sizeof v->note, "worst %s %.10g, expected %.10g", what,
-             got, expected);
+    verdict_note(v, "worst %s %.10g, expected %.10g", what, got, expected);
 }
 
 static void sample_check(const struct subject *s, struct verdict *v,
@@ -59,7 +58,7 @@ static void run(const struct subject *s, struct verdict *v)
     enum { ENDS = sizeof end / sizeof *end };
     if (!(bsdf_claims(s->bsdf).lobes & ~(unsigned)BSDF_DELTA)) {
         v->applies = false;
-        snprintf(v->note, sizeof v->note, "only delta lobes");
+        verdict_note(v, "only delta lobes");
         return;
     }
     v->unit = "relative";

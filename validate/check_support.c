@@ -18,8 +18,8 @@ static void found(struct verdict *v, struct vec3 wo, struct vec3 wi,
     v->wo = wo;
     v->wi = wi;
     v->has_wi = true;
-    snprintf(v->note, sizeof v->note, "%s = %g on the %s side", what, value,
-             wo.z * wi.z < 0 ? "other" : "same");
+    verdict_note(v, "%s = %g on the %s side", what, value,
+                 wo.z * wi.z < 0 ? "other" : "same");
 }
 
 static void pair(const struct subject *s, struct verdict *v, struct vec3 wo,
@@ -39,7 +39,7 @@ static void run(const struct subject *s, struct verdict *v)
     v->unit = "1/sr";
     if (same && other) {
         v->applies = false;
-        snprintf(v->note, sizeof v->note, "reflects and transmits");
+        verdict_note(v, "reflects and transmits");
         return;
     }
     const struct rng rng = subject_rng(s, STREAM_PAIRS);
@@ -63,7 +63,7 @@ static void run(const struct subject *s, struct verdict *v)
             pair(s, v, s->wo, wi);
     }
     if (v->value == 0)
-        snprintf(v->note, sizeof v->note, "8192 directions, 4096 samples");
+        verdict_note(v, "8192 directions, 4096 samples");
 }
 
 const struct check check_support = {

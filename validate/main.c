@@ -181,12 +181,13 @@ int main(int argc, char **argv)
     if (!run_checks(&run, &r.plan, (const struct bsdf *const *)bsdf, r.specs,
                     r.wo, r.wos, isatty(2) ? progress : NULL, NULL, &err))
         goto fail;
-    report_text(stdout, &run, r.verbose);
     status = run.failed ? EXIT_UNSOUND : EXIT_SOUND;
+    /* First, as a reader of the text may hang up. */
     if (r.json && !report_json(r.json, &run, &err)) {
         fprintf(stderr, "bsdf-validate: %s\n", err.text);
         status = EXIT_REQUEST;
     }
+    report_text(stdout, &run, r.verbose);
     run_clear(&run);
     goto done;
 fail:

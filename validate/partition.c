@@ -31,6 +31,8 @@ struct side {
 struct partition {
     struct side side[2]; /* above and below */
     size_t bins, coarse;
+    struct vec3 *pilot; /* by bins */
+    size_t *first;      /* pilot of each bin; one more at the end */
 };
 
 struct polar {
@@ -124,6 +126,30 @@ static void side_cut(struct side *s, double from, double to,
     }
 }
 
+/* Keeps the pilots in the order of their bins. */
+static bool pilots_keep(struct partition *p, const struct vec3 *pilot, size_t n)
+{
+    p->pilot = malloc((n + 1) * sizeof *p->pilot);
+    p->first = calloc(p->bins + 2, sizeof *p->first);
+    size_t *bin = malloc((n + 1) * sizeof *bin);
+    const bool ok = p->pilot && p->first && bin;
+    for (size_t i = 0; ok && i < n; i++) {
+        bin[i] = partition_bin(p, pilot[i]);
+        p->first[bin[i] + 1]++;
+    }
+    for (size_t k = 0; ok && k <= p->bins; k++)
+        p->first[k + 1] += p->first[k];
+    /* first[k] runs up to where k + 1 starts, and is put back. */
+    for (size_t i = 0; ok && i < n; i++)
+        p->pilot[p->first[bin[i]]++] = pilot[i];
+    for (size_t k = p->bins + 1; ok && k > 0; k--)
+        p->first[k] = p->first[k - 1];
+    if (ok)
+        p->first[0] = 0;
+    free(bin);
+    return ok;
+}
+
 struct partition *partition_new(const struct vec3 *pilot, size_t n)
 {
     struct partition *p = calloc(1, sizeof *p);
@@ -154,6 +180,10 @@ struct partition *partition_new(const struct vec3 *pilot, size_t n)
                  &p->bins);
         p->coarse += s->empty ? 1 : COARSE_THETA * COARSE_PHI;
     }
+    if (!pilots_keep(p, pilot, n)) {
+        partition_free(p);
+        p = NULL;
+    }
 done:
     free(polar);
     free(value);
@@ -162,6 +192,10 @@ done:
 
 void partition_free(struct partition *p)
 {
+    if (!p)
+        return;
+    free(p->pilot);
+    free(p->first);
     free(p);
 }
 
@@ -220,14 +254,24 @@ struct patch partition_patch(const struct partition *p, size_t bin)
                            at.side->phi0 + phi[1] };
 }
 
+void partition_integrate_bin(const struct partition *p, size_t bin,
+                             sphere_fn *f, const void *context, int parts,
+                             double tolerance, long *budget,
+                             const struct vec3 *hint, size_t n,
+                             struct estimate *out)
+{
+    for (int part = 0; part < parts; part++)
+        out[part] = (struct estimate){ 0, 0 };
+    patch_integrate(f, context, parts, partition_patch(p, bin), tolerance,
+                    budget, hint, n, out);
+}
+
 void partition_integrate(const struct partition *p, sphere_fn *f,
                          const void *context, int parts, double tolerance,
                          long budget, struct estimate *out)
 {
-    for (size_t bin = 0; bin < p->bins; bin++, out += parts) {
-        for (int part = 0; part < parts; part++)
-            out[part] = (struct estimate){ 0, 0 };
-        patch_integrate(f, context, parts, partition_patch(p, bin), tolerance,
-                        &budget, out);
-    }
+    for (size_t bin = 0; bin < p->bins; bin++, out += parts)
+        partition_integrate_bin(p, bin, f, context, parts, tolerance, &budget,
+                                p->pilot + p->first[bin],
+                                p->first[bin + 1] - p->first[bin], out);
 }

@@ -31,10 +31,17 @@ struct patch partition_patch(const struct partition *p, size_t bin);
 size_t partition_coarse_bins(const struct partition *p);
 size_t partition_coarse(const struct partition *p, size_t bin);
 
-/** Integrates over each bin: out[bin * parts + part].  See quadrature.  The
- * budget is for all bins together. */
+/** Integrates over each bin: out[bin * parts + part].  See quadrature; the
+ * pilots are the hints.  The budget is for all bins together. */
 void partition_integrate(const struct partition *p, sphere_fn *f,
                          const void *context, int parts, double tolerance,
                          long budget, struct estimate *out);
+
+/** One bin again, with n other directions in it as hints. */
+void partition_integrate_bin(const struct partition *p, size_t bin,
+                             sphere_fn *f, const void *context, int parts,
+                             double tolerance, long *budget,
+                             const struct vec3 *hint, size_t n,
+                             struct estimate *out);
 
 #endif

@@ -6,10 +6,13 @@
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
+#include <stdbool.h>
+
+const double pvalue_impossible = 1e-300;
 
 static double bounded(double p)
 {
-    return p < 1e-300 ? 1e-300 : p > 1 ? 1 : p;
+    return !(p >= pvalue_impossible) ? pvalue_impossible : p > 1 ? 1 : p;
 }
 
 double pvalue_chi_square(double statistic, long degrees)
@@ -18,17 +21,30 @@ double pvalue_chi_square(double statistic, long degrees)
                        : bounded(gsl_cdf_chisq_Q(statistic, (double)degrees));
 }
 
+/* The normal tail where GSL's continued fraction does not converge: within some
+ * 2 standard deviations of the mean, from 10^7 trials on. */
+static double or_normal(double p, double k, double n, double q, bool above)
+{
+    const double z = (k - n * q) / sqrt(n * q * (1 - q));
+    return !isnan(p) ? p
+           : above   ? gsl_cdf_ugaussian_Q(z)
+                     : gsl_cdf_ugaussian_P(z);
+}
+
 double pvalue_binomial(uint64_t k, uint64_t n, struct estimate q)
 {
     double low = q.value - q.error, high = q.value + q.error;
     if (!(high >= 0 && low <= 1))
-        return bounded(0);
+        return pvalue_impossible;
     low = fmax(low, 0);
     high = fmin(high, 1);
     const unsigned int count = (unsigned int)k, trials = (unsigned int)n;
-    const double at_most = gsl_cdf_binomial_P(count, low, trials);
+    const double at_most = or_normal(gsl_cdf_binomial_P(count, low, trials),
+                                     count, trials, low, false);
     const double at_least =
-        count == 0 ? 1 : gsl_cdf_binomial_Q(count - 1, high, trials);
+        count == 0 ? 1
+                   : or_normal(gsl_cdf_binomial_Q(count - 1, high, trials),
+                               count, trials, high, true);
     return bounded(2 * fmin(at_most, at_least));
 }
 
@@ -36,8 +52,9 @@ double pvalue_best(const double *p, int n)
 {
     double best = 1;
     for (int i = 0; i < n; i++)
-        best = fmin(best, p[i]);
-    return bounded(best * n);
+        if (!(p[i] >= best)) /* a NaN stays */
+            best = p[i];
+    return n > 0 ? bounded(best * n) : 1;
 }
 
 double pvalue_sigma(double p)

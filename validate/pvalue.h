@@ -9,6 +9,9 @@
 
 #include "validate/estimate.h"
 
+/** What has no chance at all, 1e-300. */
+extern const double pvalue_impossible;
+
 /** P(X >= statistic) of chi-square; 1 without a degree of freedom. */
 double pvalue_chi_square(double statistic, long degrees);
 
@@ -17,7 +20,8 @@ double pvalue_chi_square(double statistic, long degrees);
  * (or above 1) is impossible whatever k is.  n below 2^32. */
 double pvalue_binomial(uint64_t k, uint64_t n, struct estimate q);
 
-/** The best of several p-values of one thing, for the whole (Bonferroni). */
+/** The best of several p-values of one thing, for the whole (Bonferroni); 1 of
+ * none, and impossible where one is not a number. */
 double pvalue_best(const double *p, int n);
 
 /** How many standard deviations a two-sided p is worth. */

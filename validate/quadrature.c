@@ -26,8 +26,8 @@ struct job {
     struct estimate *out;
 };
 
-/* The rule on one rectangle, a value a part. */
-static void rule(struct job *j, struct rectangle r, double *value)
+/* The rule on one rectangle, a value a part; the largest |f| at a node. */
+static double rule(struct job *j, struct rectangle r, double *value)
 {
     double x[ORDER], y[ORDER], f[QUADRATURE_PARTS_MAX * ORDER * ORDER];
     const double dx = (r.x1 - r.x0) / 2, dy = (r.y1 - r.y0) / 2;
@@ -37,6 +37,9 @@ static void rule(struct job *j, struct rectangle r, double *value)
     }
     j->f(j->context, x, y, f);
     *j->budget -= ORDER * ORDER;
+    double most = 0;
+    for (int i = 0; i < j->parts * ORDER * ORDER; i++)
+        most = fmax(most, fabs(f[i]));
     for (int part = 0, at = 0; part < j->parts; part++) {
         value[part] = 0;
         for (int i = 0; i < ORDER; i++) {
@@ -46,6 +49,7 @@ static void rule(struct job *j, struct rectangle r, double *value)
             value[part] += dx * dy * node_weight[i] * row;
         }
     }
+    return most;
 }
 
 /* Both halves of a rectangle along x or along y, and how far the sum is off the
@@ -53,7 +57,8 @@ static void rule(struct job *j, struct rectangle r, double *value)
 struct halves {
     struct rectangle r[2];
     double value[2][QUADRATURE_PARTS_MAX], off[QUADRATURE_PARTS_MAX];
-    double most; /* off, in tolerances */
+    double most;   /* off, in tolerances */
+    double height; /* the largest |f| at a node */
 };
 
 static void halve(struct job *j, struct rectangle r, bool along_x,
@@ -64,8 +69,8 @@ static void halve(struct job *j, struct rectangle r, bool along_x,
         h->r[0].x1 = h->r[1].x0 = (r.x0 + r.x1) / 2;
     else
         h->r[0].y1 = h->r[1].y0 = (r.y0 + r.y1) / 2;
-    rule(j, h->r[0], h->value[0]);
-    rule(j, h->r[1], h->value[1]);
+    h->height =
+        fmax(rule(j, h->r[0], h->value[0]), rule(j, h->r[1], h->value[1]));
     h->most = 0;
     for (int part = 0; part < j->parts; part++) {
         h->off[part] = h->value[0][part] + h->value[1][part] - whole[part];
@@ -74,45 +79,73 @@ static void halve(struct job *j, struct rectangle r, bool along_x,
     }
 }
 
+/* Whether the nodes have met what the hints say is there. */
+static bool met(const struct quadrature_hint *hint, size_t n, double height)
+{
+    for (size_t i = 0; i < n; i++)
+        if (hint[i].height > 2 * height)
+            return false;
+    return true;
+}
+
+/* Brings the hints in a rectangle to the front; how many they are. */
+static size_t hints_in(struct quadrature_hint *hint, size_t n,
+                       struct rectangle r)
+{
+    size_t in = 0;
+    for (size_t i = 0; i < n; i++)
+        if (hint[i].x <= r.x1 && hint[i].y <= r.y1) {
+            const struct quadrature_hint t = hint[i];
+            hint[i] = hint[in];
+            hint[in++] = t;
+        }
+    return in;
+}
+
 static void refine(struct job *j, struct rectangle r, const double *whole,
-                   int depth)
+                   struct quadrature_hint *hint, size_t n, int depth)
 {
     struct halves x, y;
     halve(j, r, true, whole, &x);
     halve(j, r, false, whole, &y);
+    const bool seen = met(hint, n, fmax(x.height, y.height));
     /* A NaN is not looked into. */
-    if (!(x.most + y.most > 1) || depth == DEPTH_MAX || *j->budget <= 0) {
+    if ((!(x.most + y.most > 1) && seen) || depth == DEPTH_MAX ||
+        *j->budget <= 0) {
         for (int part = 0; part < j->parts; part++) {
             j->out[part].value += whole[part] + x.off[part] + y.off[part];
             j->out[part].error += fabs(x.off[part]) + fabs(y.off[part]);
         }
         return;
     }
-    const struct halves *worse = x.most > y.most ? &x : &y;
-    for (int k = 0; k < 2; k++)
-        refine(j, worse->r[k], worse->value[k], depth + 1);
+    /* Where nothing tells the axes apart, they take turns. */
+    const bool along_x = x.most == y.most ? depth % 2 == 0 : x.most > y.most;
+    const struct halves *worse = along_x ? &x : &y;
+    const size_t first = hints_in(hint, n, worse->r[0]);
+    refine(j, worse->r[0], worse->value[0], hint, first, depth + 1);
+    refine(j, worse->r[1], worse->value[1], hint + first, n - first, depth + 1);
 }
 
 void quadrature(quadrature_fn *f, const void *context, int parts,
                 struct rectangle r, double tolerance, long *budget,
-                struct estimate *out)
+                struct quadrature_hint *hint, size_t n, struct estimate *out)
 {
     struct job j = { f, context, parts, tolerance, budget, out };
-    double coarse[QUADRATURE_PARTS_MAX];
-    rule(&j, r, coarse);
+    double whole[QUADRATURE_PARTS_MAX];
+    (void)rule(&j, r, whole);
 
     /* On a graded mesh what a rectangle does not see its neighbours do: a
      * thousandth of the tolerance need not be looked at more closely. */
-    bool negligible = true;
+    bool negligible = n == 0;
     for (int part = 0; part < parts; part++)
-        negligible &= fabs(coarse[part]) <= tolerance * 1e-3;
+        negligible &= fabs(whole[part]) <= tolerance * 1e-3;
     if (!negligible) {
-        refine(&j, r, coarse, 0);
+        refine(&j, r, whole, hint, n, 0);
         return;
     }
     for (int part = 0; part < parts; part++) {
-        out[part].value += coarse[part];
-        out[part].error += fabs(coarse[part]);
+        out[part].value += whole[part];
+        out[part].error += fabs(whole[part]);
     }
 }
 

@@ -3,9 +3,12 @@
  * A rectangle is integrated by a 6 x 6 Gauss-Legendre rule, compared with the
  * sums over its halves along x and along y, and split along the worse of the
  * two until both agree with it; so a jump along an axis costs a bisection.  The
- * value is corrected by both differences, and they are the bound.  A rule sees
- * only what its nodes see: a mesh must be graded toward a peak, never laid over
- * it, and have its edges where the integrand has kinks.
+ * value is corrected by both differences, and they are taken for the error.
+ *
+ * A rule sees only what its nodes see.  A mesh must be graded toward a peak,
+ * never laid over it, and have its edges where the integrand has kinks; and
+ * where the integrand is known to be large, as at a sampled direction, a hint
+ * keeps the rule splitting until its nodes have seen that.
  */
 #ifndef VALIDATE_QUADRATURE_H
 #define VALIDATE_QUADRATURE_H
@@ -14,7 +17,7 @@
 
 #include "validate/estimate.h"
 
-enum { QUADRATURE_ORDER = 6, QUADRATURE_PARTS_MAX = 4 };
+enum { QUADRATURE_ORDER = 6, QUADRATURE_PARTS_MAX = 5 };
 
 struct rectangle {
     double x0, x1, y0, y1;
@@ -26,13 +29,20 @@ typedef void quadrature_fn(const void *context,
                            const double x[QUADRATURE_ORDER],
                            const double y[QUADRATURE_ORDER], double *value);
 
+/** A point in the rectangle, and the largest |integrand| of any part there. */
+struct quadrature_hint {
+    double x, y, height;
+};
+
 /** Adds the integrals over a rectangle to out[0 .. parts-1]; parts at most
  * QUADRATURE_PARTS_MAX.  A leaf is accepted where the rules differ by at
  * most the tolerance, or where the budget of evaluations, shared by many calls,
- * is used up; either way the difference is in the error. */
+ * is used up; either way the difference is in the error.  A leaf with hints
+ * must have met half of the greatest height among them too.  The n hints, which
+ * may be none, are put in another order. */
 void quadrature(quadrature_fn *f, const void *context, int parts,
                 struct rectangle r, double tolerance, long *budget,
-                struct estimate *out);
+                struct quadrature_hint *hint, size_t n, struct estimate *out);
 
 /** Cuts the intervals between n sorted edges so that none is wider than widest
  * or more than twice as wide as the narrower one beside it was.  Writes at

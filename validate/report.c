@@ -7,20 +7,23 @@
 #include "bsdf/cli.h"
 #include "bsdf/outfile.h"
 
-/* How bad: failures first, then the least room below the limit. */
-static double badness(const struct verdict *v)
+/* Failures before passes, then the least room below the limit; a check without
+ * a word on one direction may have one on another. */
+static bool worse(const struct verdict *a, const struct verdict *b)
 {
-    if (!v->applies)
-        return -1;
-    if (!v->passed)
-        return isfinite(v->value) ? 1e300 + v->value : INFINITY;
-    return v->limit > 0 ? v->value / v->limit : v->value;
+    if (!a->applies || !b->applies)
+        return a->applies;
+    if (a->passed != b->passed)
+        return !a->passed;
+    const double x = a->limit > 0 ? a->value / a->limit : a->value;
+    const double y = b->limit > 0 ? b->value / b->limit : b->value;
+    return x > y || (isnan(x) && !isnan(y));
 }
 
 static void direction_text(char *text, size_t size, struct vec3 w)
 {
     const struct angles a = dir_to_degrees(w);
-    snprintf(text, size, "%.4g,%.4g", a.theta_deg, a.phi_deg);
+    snprintf(text, size, "%.7g,%.5g", a.theta_deg, a.phi_deg);
 }
 
 static void row(FILE *out, const struct verdict *v)
@@ -74,8 +77,8 @@ void report_text(FILE *out, const struct run *run, bool verbose)
             for (size_t i = first; i < last; i++) {
                 if (verbose)
                     row(out, &run->result[i].verdict[c]);
-                if (badness(&run->result[i].verdict[c]) >
-                    badness(&run->result[worst].verdict[c]))
+                if (worse(&run->result[i].verdict[c],
+                          &run->result[worst].verdict[c]))
                     worst = i;
             }
             if (!verbose)
@@ -165,7 +168,12 @@ bool report_json(const char *path, const struct run *run, struct err *err)
     if (ok) {
         const bool dumped = json_dumpf(root, out.stream, JSON_INDENT(1)) == 0 &&
                             fputc('\n', out.stream) != EOF;
-        ok = outfile_close(&out, err) && dumped;
+        if (dumped)
+            ok = outfile_close(&out, err);
+        else {
+            ok = err_set(err, "%s: cannot be written", path);
+            outfile_abandon(&out);
+        }
     }
     json_decref(root);
     return ok;

@@ -36,14 +36,35 @@ static void on_patch(const void *context, const double theta[ORDER],
                 value[at] *= sine[i];
 }
 
+/* Where a direction is in a patch, and how large the integrand is there. */
+static struct quadrature_hint hint_of(const struct patch_job *j, struct patch p,
+                                      struct vec3 w)
+{
+    double value[QUADRATURE_PARTS_MAX];
+    const double sine = sqrt(w.x * w.x + w.y * w.y);
+    const double middle = (p.phi0 + p.phi1) / 2;
+    struct quadrature_hint h = {
+        .x = atan2(sine, w.z),
+        .y = middle + remainder(atan2(w.y, w.x) - middle, 2 * PI),
+    };
+    j->f(j->context, 1, (struct dirs){ &w.x, &w.y, &w.z }, value);
+    for (int part = 0; part < j->parts; part++)
+        h.height = fmax(h.height, fabs(value[part]) * sine);
+    return h;
+}
+
 void patch_integrate(sphere_fn *f, const void *context, int parts,
                      struct patch p, double tolerance, long *budget,
-                     struct estimate *out)
+                     const struct vec3 *hint, size_t n, struct estimate *out)
 {
     const struct patch_job j = { f, context, parts };
+    struct quadrature_hint place[PATCH_HINTS_MAX];
+    n = n < PATCH_HINTS_MAX ? n : PATCH_HINTS_MAX;
+    for (size_t i = 0; i < n; i++)
+        place[i] = hint_of(&j, p, hint[i]);
     quadrature(on_patch, &j, parts,
                (struct rectangle){ p.theta0, p.theta1, p.phi0, p.phi1 },
-               tolerance, budget, out);
+               tolerance, budget, place, n, out);
 }
 
 struct facing {
@@ -77,9 +98,9 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-struct estimate hemisphere_facing(double (*f)(struct vec3 w,
-                                              const void *context),
-                                  const void *context, struct vec3 wo)
+struct estimate
+hemisphere_facing(double (*f)(struct vec3 w, const void *context),
+                  const void *context, struct vec3 wo, double tolerance)
 {
     enum { RINGS = 25, STEPS = 10, MARKS = 7, EDGES = 2 * STEPS * MARKS };
     const struct facing j = { f, context, wo };
@@ -111,8 +132,8 @@ struct estimate hemisphere_facing(double (*f)(struct vec3 w,
         const double in = ring == RINGS - 1 ? 0 : out / 2;
         for (size_t k = 0; k + 1 < n; k++)
             quadrature(on_share, &j, 1,
-                       (struct rectangle){ in, out, phi[k], phi[k + 1] }, 1e-11,
-                       &budget, &total);
+                       (struct rectangle){ in, out, phi[k], phi[k + 1] },
+                       tolerance, &budget, NULL, 0, &total);
     }
     return total;
 }
@@ -120,5 +141,5 @@ struct estimate hemisphere_facing(double (*f)(struct vec3 w,
 struct estimate hemisphere(double (*f)(struct vec3 w, const void *context),
                            const void *context)
 {
-    return hemisphere_facing(f, context, (struct vec3){ 0, 0, 1 });
+    return hemisphere_facing(f, context, (struct vec3){ 0, 0, 1 }, 1e-11);
 }

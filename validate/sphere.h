@@ -25,19 +25,23 @@ static inline struct vec3 patch_centre(struct patch p)
 typedef void sphere_fn(const void *context, size_t n, struct dirs w,
                        double *value);
 
-/** Adds the integrals over a patch to out; see quadrature. */
+/** Adds the integrals over a patch to out; see quadrature.  The n directions in
+ * it, which may be none, are where the integrand is known to be large; at most
+ * PATCH_HINTS_MAX are heeded. */
+enum { PATCH_HINTS_MAX = 256 };
 void patch_integrate(sphere_fn *f, const void *context, int parts,
                      struct patch p, double tolerance, long *budget,
-                     struct estimate *out);
+                     const struct vec3 *hint, size_t n, struct estimate *out);
 
 /** The integral over the upper hemisphere of a function that may peak at the
  * normal, down to a width of 1e-7 rad, and along the x and y axes. */
 struct estimate hemisphere(double (*f)(struct vec3 w, const void *context),
                            const void *context);
 
-/** The same over the directions in it that face wo, w.wo > 0; wo.z > 0. */
-struct estimate hemisphere_facing(double (*f)(struct vec3 w,
-                                              const void *context),
-                                  const void *context, struct vec3 wo);
+/** The same over the directions in it that face wo, w.wo > 0; wo.z > 0.  The
+ * tolerance is a leaf's, see quadrature; hemisphere has 1e-11. */
+struct estimate
+hemisphere_facing(double (*f)(struct vec3 w, const void *context),
+                  const void *context, struct vec3 wo, double tolerance);
 
 #endif

@@ -34,7 +34,9 @@ struct rng subject_rng(const struct subject *s, enum stream purpose)
     return (struct rng){ s->plan->seed, hash(h, &tag, 1) };
 }
 
-/* Draws n samples from index `from` on; n at most BATCH. */
+const double subject_unit_error = 1e-9;
+
+/* n at most BATCH. */
 static void draw(const struct subject *s, struct rng rng, uint64_t from,
                  size_t n, struct bsdf_sample *out)
 {
@@ -48,18 +50,36 @@ static void draw(const struct subject *s, struct rng rng, uint64_t from,
                      (struct dirs){ x, y, z }, out);
 }
 
-static bool refused(const struct bsdf_sample *a)
+bool subject_refused(const struct bsdf_sample *a)
 {
     return a->pdf == 0 && spectrum_is(a->weight, BANDS_MAX, 0);
+}
+
+void subject_draw(const struct subject *s, struct rng rng, uint64_t from,
+                  size_t n, struct bsdf_sample *out)
+{
+    for (size_t at = 0; at < n; at += BATCH)
+        draw(s, rng, from + at, n - at < BATCH ? n - at : BATCH, out + at);
+}
+
+/* What no sample may be, whatever the model. */
+static bool bad(const struct bsdf_sample *a)
+{
+    for (int b = 0; b < BANDS_MAX; b++)
+        if (!(a->weight.band[b] >= 0 && isfinite(a->weight.band[b])))
+            return true;
+    return !isfinite(a->pdf) || (!subject_refused(a) &&
+                                 !(a->pdf > 0 && fabs(vec3_length(a->wi) - 1) <=
+                                                     subject_unit_error));
 }
 
 static double difference(const struct delta *d, const struct bsdf_sample *a)
 {
     const struct vec3 off = vec3_add(a->wi, vec3_scale(-1, d->wi));
-    double most = fmax(vec3_length(off), fabs(a->pdf - d->pdf));
+    double sum = vec3_length(off) + fabs(a->pdf - d->pdf);
     for (int b = 0; b < BANDS_MAX; b++)
-        most = fmax(most, fabs(a->weight.band[b] - d->weight.band[b]));
-    return most;
+        sum += fabs(a->weight.band[b] - d->weight.band[b]);
+    return sum;
 }
 
 /* A direction is another one from 1e-6 away. */
@@ -69,7 +89,9 @@ static void delta_count(struct survey *v, const struct bsdf_sample *a)
         struct delta *d = &v->delta[k];
         if (vec3_length(vec3_add(a->wi, vec3_scale(-1, d->wi))) < 1e-6) {
             d->count++;
-            d->spread = fmax(d->spread, difference(d, a));
+            const double off = difference(d, a);
+            if (!(off <= d->spread)) /* a NaN stays */
+                d->spread = off;
             return;
         }
     }
@@ -94,7 +116,9 @@ static void survey_sample(struct subject *s)
         const size_t n = left < BATCH ? (size_t)left : BATCH;
         draw(s, rng, at, n, batch);
         for (size_t i = 0; i < n; i++) {
-            if (refused(&batch[i])) {
+            if (bad(&batch[i]) && v->bad++ == 0)
+                v->first_bad = batch[i];
+            if (subject_refused(&batch[i])) {
                 v->refused++;
             } else if (batch[i].delta) {
                 delta_count(v, &batch[i]);
@@ -136,20 +160,74 @@ double subject_compression(const struct subject *s, struct vec3 wi)
     return wi.z * s->wo.z >= 0 ? 1 : s->wo.z > 0 ? eta * eta : 1 / (eta * eta);
 }
 
+/* The bands, and behind them what cannot be sampled. */
 static void energy_at(const void *context, size_t n, struct dirs w,
                       double *value)
 {
     struct many m;
     const struct subject *s = context;
     struct spectrum f[BATCH];
-    bsdf_eval_many(s->bsdf, n, many_wo(&m, s, n), w, f);
+    double pdf[BATCH];
+    const struct dirs wo = many_wo(&m, s, n);
+    bsdf_eval_many(s->bsdf, n, wo, w, f);
+    bsdf_pdf_many(s->bsdf, n, wo, w, pdf);
     const int bands = bsdf_bands(s->bsdf)->count;
     for (size_t i = 0; i < n; i++) {
         const double scale =
             fabs(w.z[i]) * subject_compression(s, dirs_at(w, i));
-        for (int b = 0; b < bands; b++)
+        double most = 0;
+        for (int b = 0; b < bands; b++) {
             value[(size_t)b * n + i] = f[i].band[b] * scale;
+            most = fmax(most, f[i].band[b] * scale);
+        }
+        value[(size_t)bands * n + i] = pdf[i] > 0 ? 0 : most;
     }
+}
+
+/* Where the integral of a bin fell short of what was drawn there by far, it may
+ * have missed a ridge: it is taken again with drawn directions as hints.  A
+ * better integral is all that this can give, so a sampler that is wrong stays
+ * wrong.  False when out of memory. */
+static bool survey_look_again(struct subject *s)
+{
+    enum { HINTS = 64 };
+    struct survey *v = &s->survey;
+    const size_t bins = partition_bins(v->partition);
+    const struct rng rng = subject_rng(s, STREAM_SURVEY);
+    struct bsdf_sample batch[BATCH];
+    size_t *slot = calloc(bins, sizeof *slot), slots = 0;
+    for (size_t i = 0; slot && i < bins; i++) {
+        const double expected =
+            (v->mass[i].value + v->mass[i].error) * (double)v->samples;
+        if ((double)v->count[i] > expected + 4 * sqrt(expected + 4))
+            slot[i] = ++slots;
+    }
+    struct vec3 *hint = malloc((slots * HINTS + 1) * sizeof *hint);
+    size_t *n = calloc(slots + 1, sizeof *n);
+    const bool ok = slot && hint && n;
+    for (uint64_t at = 0; ok && slots > 0 && at < v->samples; at += BATCH) {
+        const uint64_t left = v->samples - at;
+        const size_t count = left < BATCH ? (size_t)left : BATCH;
+        draw(s, rng, at, count, batch);
+        for (size_t i = 0; i < count; i++) {
+            if (subject_refused(&batch[i]) || batch[i].delta)
+                continue;
+            const size_t bin = partition_bin(v->partition, batch[i].wi);
+            const size_t k = bin < bins ? slot[bin] : 0;
+            if (k > 0 && n[k] < HINTS)
+                hint[(k - 1) * HINTS + n[k]++] = batch[i].wi;
+        }
+    }
+    long budget = mass_budget;
+    for (size_t i = 0; ok && i < bins; i++)
+        if (slot[i] > 0)
+            partition_integrate_bin(
+                v->partition, i, pdf_at, s, 1, mass_tolerance, &budget,
+                hint + (slot[i] - 1) * HINTS, n[slot[i]], &v->mass[i]);
+    free(slot);
+    free(hint);
+    free(n);
+    return ok;
 }
 
 /* Up to PILOTS directions on each side; more are drawn than usual where few of
@@ -170,7 +248,7 @@ static struct vec3 *pilots_draw(const struct subject *s, size_t *n)
         draw(s, rng, at, BATCH, batch);
         for (size_t i = 0; i < BATCH; i++) {
             const bool through = batch[i].wi.z * s->wo.z < 0;
-            if (refused(&batch[i]) || batch[i].delta ||
+            if (subject_refused(&batch[i]) || batch[i].delta ||
                 !(vec3_dot(batch[i].wi, batch[i].wi) > 0.5) ||
                 count[through] == PILOTS)
                 continue;
@@ -201,9 +279,13 @@ bool subject_init(struct subject *s, const struct bsdf *b, struct vec3 wo,
     }
     partition_integrate(v->partition, pdf_at, s, 1, mass_tolerance, mass_budget,
                         v->mass);
+    survey_sample(s);
+    if (!survey_look_again(s)) {
+        subject_clear(s);
+        return err_set(err, "out of memory");
+    }
     for (size_t i = 0; i < bins; i++)
         v->total = estimate_add(v->total, v->mass[i]);
-    survey_sample(s);
     return true;
 }
 
@@ -258,7 +340,7 @@ static double typical_rounding(const struct subject *s)
     size_t n = 0;
     draw(s, subject_rng(s, STREAM_PAIRS), 0, DRAWS, sample);
     for (size_t i = 0; i < DRAWS; i++) {
-        if (refused(&sample[i]) || sample[i].delta)
+        if (subject_refused(&sample[i]) || sample[i].delta)
             continue;
         const double r = subject_rounding(s, sample[i].wi, false);
         size_t at = n++;
@@ -269,25 +351,27 @@ static double typical_rounding(const struct subject *s)
     return n ? off[n / 2] : 0;
 }
 
-void subject_albedo(const struct subject *s, struct estimate albedo[BANDS_MAX])
+void subject_albedo(const struct subject *s, struct estimate albedo[BANDS_MAX],
+                    struct estimate *unsampled)
 {
     const struct survey *v = &s->survey;
-    const int bands = bsdf_bands(s->bsdf)->count;
+    const int bands = bsdf_bands(s->bsdf)->count, parts = bands + 1;
     const size_t bins = partition_bins(v->partition);
     const double rounding = 0x1p-48 + typical_rounding(s);
-    struct estimate *part = malloc(bins * (size_t)bands * sizeof *part);
-    for (int b = 0; b < BANDS_MAX; b++)
-        albedo[b] = (struct estimate){ 0, part ? 0 : INFINITY };
-    if (!part)
-        return;
-    partition_integrate(v->partition, energy_at, s, bands, mass_tolerance,
-                        mass_budget, part);
-    for (size_t i = 0; i < bins; i++)
-        for (int b = 0; b < bands; b++)
-            albedo[b] =
-                estimate_add(albedo[b], part[i * (size_t)bands + (size_t)b]);
+    struct estimate sum[BANDS_MAX + 1] = { { 0, 0 } };
+    struct estimate *part = malloc(bins * (size_t)parts * sizeof *part);
+    if (part)
+        partition_integrate(v->partition, energy_at, s, parts, mass_tolerance,
+                            mass_budget, part);
+    for (int b = 0; b < parts; b++)
+        for (size_t i = 0; i < bins; i++)
+            sum[b] =
+                estimate_add(sum[b], part ? part[i * (size_t)parts + (size_t)b]
+                                          : (struct estimate){ NAN, NAN });
     free(part);
+    *unsampled = sum[bands];
     for (int b = 0; b < bands; b++) {
+        albedo[b] = sum[b];
         for (int k = 0; k < v->deltas; k++)
             albedo[b].value += v->delta[k].pdf * v->delta[k].weight.band[b] *
                                subject_compression(s, v->delta[k].wi);

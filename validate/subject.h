@@ -37,6 +37,8 @@ struct survey {
     uint64_t samples; /* drawn: bins + refused + stray + deltas */
     uint64_t refused; /* all zeros */
     uint64_t stray;   /* neither refused nor a direction, NaN for one */
+    uint64_t bad;     /* not finite, negative, without a pdf, or not a unit */
+    struct bsdf_sample first_bad;
 
     struct delta delta[DELTAS_MAX];
     int deltas;
@@ -67,8 +69,20 @@ struct estimate survey_refusal(const struct survey *v);
 double subject_compression(const struct subject *s, struct vec3 wi);
 
 /** The share of light that is not lost, one a band: the integral of
- * f (n_i / n_o)^2 |cos| over the sphere, deltas included. */
-void subject_albedo(const struct subject *s, struct estimate albedo[BANDS_MAX]);
+ * f (n_i / n_o)^2 |cos| over the sphere, deltas included.  unsampled takes what
+ * the band with the most of it has where the pdf is 0. */
+void subject_albedo(const struct subject *s, struct estimate albedo[BANDS_MAX],
+                    struct estimate *unsampled);
+
+/** Draws n samples from an index on. */
+void subject_draw(const struct subject *s, struct rng rng, uint64_t from,
+                  size_t n, struct bsdf_sample *out);
+
+/** All zeros, as when the light is absorbed. */
+bool subject_refused(const struct bsdf_sample *a);
+
+/** How far the length of a direction may be off 1. */
+extern const double subject_unit_error;
 
 /** How far plain double arithmetic may put the pdf, or the largest band of f,
  * off at wi, relative to it: the relative change when wi moves by 2^-40, scaled

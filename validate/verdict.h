@@ -29,4 +29,10 @@ struct verdict {
     char note[256];     /* the numbers behind it, one line */
 };
 
+/** Sets the note, or adds to it; what does not fit is cut off. */
+__attribute__((format(printf, 2, 3))) void
+verdict_note(struct verdict *v, const char *format, ...);
+__attribute__((format(printf, 2, 3))) void verdict_add(struct verdict *v,
+                                                       const char *format, ...);
+
 #endif
