@@ -21,15 +21,24 @@ enum fault {
     NEGATIVE_PDF,  /* the pdf is negative there */
     LONG_WI,       /* sampled directions are longer than 1 by size */
     G1_FACTOR,     /* the model shows G1 times size */
+    HALF,          /* the pdf is 0 where wi.y < 0, and so are samples refused */
+    RARE_NAN,      /* the weight is no number in a share size of samples */
+    HUGE_F,        /* f times 1e300 */
+    FORGETFUL,     /* another sample each time that it is asked */
 };
 
 static const char *const faults[] = {
-    "none",          "masking_twice", "sampled_alpha",
-    "no_cos_h",      "f_below",       "pdf_below",
-    "no_cosine",     "pdf_factor",    "f_factor",
-    "weight_factor", "sample_pdf",    "refuses",
-    "leaks",         "nan_f",         "negative_pdf",
-    "long_wi",       "g1_factor",     NULL,
+    "none",          "masking_twice",
+    "sampled_alpha", "no_cos_h",
+    "f_below",       "pdf_below",
+    "no_cosine",     "pdf_factor",
+    "f_factor",      "weight_factor",
+    "sample_pdf",    "refuses",
+    "leaks",         "nan_f",
+    "negative_pdf",  "long_wi",
+    "g1_factor",     "half",
+    "rare_nan",      "huge_f",
+    "forgetful",     NULL,
 };
 
 struct metal {
@@ -83,7 +92,9 @@ static double f_value(const struct metal *m, struct vec3 wo, struct vec3 wi)
         return NAN;
     const double other = m->fault == MASKING_TWICE ? g1(m, wo) : g1(m, wi);
     const double f = d(m, half(wo, wi)) * g1(m, wo) * other / (4 * wo.z * wi.z);
-    return m->fault == F_FACTOR ? f * m->size : f;
+    return m->fault == F_FACTOR ? f * m->size
+           : m->fault == HUGE_F ? f * 1e300
+                                : f;
 }
 
 static struct spectrum metal_eval(const void *state, struct vec3 wo,
@@ -104,6 +115,8 @@ static double metal_pdf(const void *state, struct vec3 wo, struct vec3 wi)
                             : d(m, h) * h.z / (4 * vec3_dot(wi, h));
     if (m->fault == NO_COS_H)
         pdf /= h.z;
+    if (m->fault == HALF && wi.y < 0)
+        return 0;
     if (m->fault == PDF_FACTOR)
         pdf *= m->size;
     if (m->fault == NEGATIVE_PDF && wi.z < m->size)
@@ -117,6 +130,9 @@ static struct bsdf_sample metal_sample(const void *state, struct vec3 wo,
     const struct metal *m = state;
     const struct bsdf_sample refused = { 0 };
     const double alpha = m->alpha * (m->fault == SAMPLED_ALPHA ? m->size : 1);
+    static _Atomic unsigned calls;
+    if (m->fault == FORGETFUL)
+        u.y = fmod(u.y + 0.618 * (double)(++calls), 1);
     if (!(wo.z > 0) || (m->fault == REFUSES && u.z < m->size))
         return refused;
     const struct vec3 h =
@@ -137,6 +153,8 @@ static struct bsdf_sample metal_sample(const void *state, struct vec3 wo,
         weight /= wi.z;
     if (m->fault == WEIGHT_FACTOR)
         weight *= m->size;
+    if (m->fault == RARE_NAN && u.z < m->size)
+        weight = NAN;
     return (struct bsdf_sample){
         .wi = vec3_scale(m->fault == LONG_WI ? 1 + m->size : 1, wi),
         .pdf = m->fault == SAMPLE_PDF ? pdf * m->size : pdf,

@@ -212,6 +212,30 @@ static void nan_everywhere_never_passes(void **state)
     bsdf_free(b);
 }
 
+static void light_that_is_never_sampled_fails_energy(void **state)
+{
+    (void)state;
+    expect(METAL, "fault=half", 20, 100000, "energy");
+}
+
+static void one_bad_sample_in_ten_thousand_fails_finite(void **state)
+{
+    (void)state;
+    expect(METAL, "fault=rare_nan,size=1e-4", 20, 1000000, "finite");
+}
+
+static void a_sampler_with_a_memory_fails_finite(void **state)
+{
+    (void)state;
+    expect(METAL, "fault=forgetful", 20, 100000, "finite");
+}
+
+static void huge_values_do_not_overflow_a_note(void **state)
+{
+    (void)state;
+    expect(METAL, "fault=huge_f", 20, 100000, "energy");
+}
+
 static void a_wrong_g1_fails_the_furnace(void **state)
 {
     (void)state;
@@ -288,6 +312,14 @@ int main(void)
           what_is_no_number_fails_finite },
         { "an f that is NaN passes nothing that looks at f",
           nan_everywhere_never_passes },
+        { "light that is never sampled fails energy",
+          light_that_is_never_sampled_fails_energy },
+        { "one bad sample in ten thousand fails finite",
+          one_bad_sample_in_ten_thousand_fails_finite },
+        { "a sampler with a memory fails finite",
+          a_sampler_with_a_memory_fails_finite },
+        { "huge values do not overflow a note",
+          huge_values_do_not_overflow_a_note },
         { "a G1 1e-5 off fails the furnace", a_wrong_g1_fails_the_furnace },
         { "a mirror 1e-12 off fails delta", a_tilted_mirror_fails_delta },
         { "a mirror drawn too rarely fails delta",

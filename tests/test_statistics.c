@@ -27,6 +27,12 @@ static void binomial_tails_are_exact(void **state)
     assert_true(pvalue_binomial(0, 1000, (struct estimate){ 0, 0 }) == 1);
     assert_true(pvalue_binomial(1, 1000, (struct estimate){ 0, 0 }) <= 1e-300);
     assert_true(pvalue_binomial(1000, 1000, (struct estimate){ 1, 0 }) == 1);
+    /* GSL's own tail is NaN here. */
+    assert_true(
+        pvalue_binomial(5000000, 10000000, (struct estimate){ 0.5, 0 }) > 0.9);
+    assert_close(
+        pvalue_binomial(5001000, 10000000, (struct estimate){ 0.5, 0 }),
+        erfc(1000 / sqrt(5e6)), 2e-3);
 }
 
 /* The error is read in favour of what was counted, and no further. */
@@ -43,6 +49,15 @@ static void the_error_counts_in_favour(void **state)
                 1e-80);
     assert_true(pvalue_binomial(0, 1000, (struct estimate){ NAN, 0 }) <=
                 1e-300);
+}
+
+static void the_best_of_many_keeps_a_nan(void **state)
+{
+    (void)state;
+    const double p[] = { 0.5, NAN, 0.01 };
+    assert_true(pvalue_best(p, 3) <= 1e-300);
+    assert_true(pvalue_best(p, 1) == 0.5);
+    assert_true(pvalue_best(p, 0) == 1);
 }
 
 static void sigma_is_two_sided(void **state)
@@ -86,6 +101,7 @@ int main(void)
         { "binomial tails are exact", binomial_tails_are_exact },
         { "an error counts in favour, and no further",
           the_error_counts_in_favour },
+        { "the best of many keeps a NaN", the_best_of_many_keeps_a_nan },
         { "sigma is two-sided", sigma_is_two_sided },
         { "Holm steps down and stops", holm_steps_down },
         { "the least p fails at any significance",

@@ -52,7 +52,7 @@ double pvalue_best(const double *p, int n)
 {
     double best = 1;
     for (int i = 0; i < n; i++)
-        if (!(p[i] >= best)) /* a NaN stays */
+        if (isnan(p[i]) || p[i] < best) /* a NaN stays */
             best = p[i];
     return n > 0 ? bounded(best * n) : 1;
 }
