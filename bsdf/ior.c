@@ -10,6 +10,7 @@
  * compared with it, so that a name cannot lead out of them.
  */
 #include "bsdf/ior.h"
+#include "bsdf/ior_page.h"
 
 #include <assert.h>
 #include <dirent.h>
@@ -28,16 +29,47 @@
  * them; a loop of links has more. */
 enum { DEPTH_MAX = 5, ENTRIES_MAX = 50000 };
 
-/* What a material's name alone stands for. */
+/* What a material's name alone stands for: a page that covers all of 360 to
+ * 830 nm, by measurement if there is one, and not by a model fitted to others'
+ * figures or by a calculation.  The customary one where that leaves
+ * several.  Each file in data/ior/ says more. */
 static const struct {
     const char *material, *page;
 } usual[] = {
     /* The only one that goes through the visible; the other ends at 316 nm. */
     { "Ca", "Mathewson" },
     /* P. B. Johnson and R. W. Christy's noble metals, 188 to 1937 nm, which
-     * are the usual ones in rendering. */
+     * are the usual ones in rendering; and their transition metals, measured
+     * alike.  The pages next to these are of thin films (Cr/Sytchkova, 12 nm),
+     * start at 400 nm (Ti/Mash), or are electron energy losses turned into n
+     * and k (Werner), which in the visible reflect far too well. */
+    { "Ag", "Johnson" },
     { "Au", "Johnson" },
     { "Cu", "Johnson" },
+    { "Cr", "Johnson" },
+    { "Fe", "Johnson" },
+    { "Ni", "Johnson" },
+    { "Ti", "Johnson" },
+    /* Measurements by several, freed of the oxide that all aluminium grows and
+     * made consistent by Kramers and Kronig's relation.  Mathewson's direct
+     * ones start at 496 nm, where their reflectance is within .01. */
+    { "Al", "Rakic" },
+    /* Measured on a crystal; Werner's reflect .84 at 550 nm instead of .50. */
+    { "W", "Weaver" },
+    /* The only ellipsometry; the others are Werner's, with .93 instead of .73
+     * at 550 nm, and models. */
+    { "Pt", "Tselin" },
+    /* The maker's own; Lane's starts at 5 um. */
+    { "BK7", "Schott" },
+    /* Measured on many specimens of fused silica.  The other pages are a film,
+     * crystalline quartz and the far infrared. */
+    { "SiO2", "Malitson" },
+    /* n measured to 6 digits, at 20 degrees; without k, which no surface of
+     * water needs.  Hale's has k, and n to 3 digits, from a survey. */
+    { "H2O", "Daimon-20.0C" },
+    /* Diamond, from its reflectance; Peter's, which agrees within .01, ends at
+     * 760 nm, and the third is graphite. */
+    { "C", "Phillip" },
 };
 
 /* -- lists of words -------------------------------------------------------- */
@@ -347,7 +379,8 @@ static bool read_name(struct name *name, const char *text, struct err *err)
           !read_part(name->page, text + first + 1, strlen(text + first + 1)))))
         return err_set(err,
                        "optical constants \"%.200s\": expected MATERIAL, "
-                       "MATERIAL/PAGE or a file that ends in .yml, as in Ca, "
+                       "MATERIAL/PAGE or a file that ends in .yml, .eta.spd, "
+                       ".k.spd, .txt, .csv, .dat or .nk, as in Ca, "
                        "Ca/Mathewson or my/Ca.yml",
                        text);
     return true;
@@ -405,7 +438,7 @@ struct ior_page *ior_find(const char *name, const char *ior_path,
                           struct err *err)
 {
     assert(name);
-    if (is_yml(name))
+    if (ior_is_file(name))
         return ior_page_load(name, err);
 
     struct ior_page *page = NULL;
