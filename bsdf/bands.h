@@ -1,7 +1,8 @@
 /* bands.h - the colours that an instance is made for, and values in them
  *
- * A band is a vacuum wavelength [nm].  For now the three bands of a picture
- * are three fixed wavelengths as well: 614, 549 and 466 nm for R, G and B.
+ * A band is a vacuum wavelength [nm], or one of R, G and B in linear sRGB.
+ * For the latter the measured constants of a metal are brought to three pairs
+ * by a method of colour.h.
  */
 #ifndef BSDF_BANDS_H
 #define BSDF_BANDS_H
@@ -12,9 +13,16 @@
 
 enum { BANDS_MAX = 4 };
 
+enum bands_kind {
+    BANDS_NM,          /* wavelengths */
+    BANDS_RGB_AVERAGE, /* R, G, B: colour-matching averages of eta and of k */
+    BANDS_RGB_FIT,     /* R, G, B: eta and k fitted to the reflectance, D65 */
+};
+
 struct bands {
-    int count; /* 1 to BANDS_MAX */
-    double nm[BANDS_MAX];
+    int count;            /* 1 to BANDS_MAX; 3 for R, G, B */
+    double nm[BANDS_MAX]; /* 0 for R, G, B */
+    enum bands_kind kind;
 };
 
 /** One value a band; those past the count are 0. */
@@ -22,14 +30,25 @@ struct spectrum {
     double band[BANDS_MAX];
 };
 
-/** The three wavelengths that stand for R, G and B. */
+/** R, G, B by the fit. */
 extern const struct bands bands_default;
+
+/** The write-up's three wavelengths that stand for R, G and B, 614, 549 and
+ * 466 nm. */
+extern const struct bands bands_fixed;
 
 /** Reads "614,549,466": one to four wavelengths in (0, 1e9] nm. */
 bool bands_parse(struct bands *bands, const char *text, struct err *err);
 
-/** Writes "614, 549, 466 nm". */
+/** Reads a way to R, G, B: "fit", "average", or "fixed:A,B,C" for three
+ * wavelengths in nm. */
+bool bands_parse_rgb(struct bands *bands, const char *text, struct err *err);
+
+/** Writes "614, 549, 466 nm" or "R, G, B (fit)". */
 void bands_print(const struct bands *bands, char *text, int size);
+
+/** Writes "549 nm" or "G". */
+void bands_print_one(const struct bands *bands, int band, char *text, int size);
 
 static inline struct spectrum spectrum_of(int count, double value)
 {

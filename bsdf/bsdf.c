@@ -221,7 +221,9 @@ static bool nested_read(const struct bsdf_type *type,
         return err_set(err, "out of memory");
     *nested = bsdf_new(spec, bands, &why);
     free(spec);
-    return *nested || err_set(err, "%s: %s: %s", type->name, p->key, why.text);
+    if (!*nested || why.text[0])
+        err_set(err, "%s: %s: %s", type->name, p->key, why.text);
+    return *nested;
 }
 
 static bool value_read(const struct bsdf_type *type, const struct bsdf_param *p,
@@ -311,6 +313,8 @@ static struct bsdf *make(const struct bsdf_type *type, const char *spec,
                          const char *settings, const struct bands *bands,
                          struct err *err)
 {
+    if (err)
+        err->text[0] = '\0';
     assert(bands->count >= 1 && bands->count <= BANDS_MAX);
     struct bsdf *b = calloc(1, sizeof *b);
     if (b) {

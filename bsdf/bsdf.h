@@ -111,7 +111,8 @@ struct bsdf;
 /** Makes what a spec describes: "name" or "name:key=value,key=a/b/c", where a
  * value may be in single quotes ('' is a quote inside), a spectrum is one value
  * or one a band, and a model inside another is in parentheses.  NULL and the
- * reason if it cannot be made.  Owned by the caller. */
+ * reason if it cannot be made.  Owned by the caller.  If it can, err has a
+ * warning or is empty. */
 struct bsdf *bsdf_new(const char *spec, const struct bands *bands,
                       struct err *err);
 

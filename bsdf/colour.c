@@ -499,7 +499,7 @@ bool colour_conductor(const struct cie *cie, const struct ior_page *page,
     struct colour_metal metal;
     struct spectrum curve[ANGLES] = { { { 0 } } };
     if (method == COLOUR_FIXED &&
-        !fixed(page, bands ? bands : &bands_default, &pairs, err))
+        !fixed(page, bands ? bands : &bands_fixed, &pairs, err))
         return false;
     if (method != COLOUR_FIXED || report) {
         if (!colour_metal_init(&metal, cie, page, err))

@@ -121,7 +121,7 @@ struct colour_report {
 /** eta and k of R, G and B; both untouched on failure.
  *
  * bands are the three wavelengths of the method fixed, NULL meaning
- * bands_default, which the page has to reach; the other methods ignore them.
+ * bands_fixed, which the page has to reach; the other methods ignore them.
  * With no report the method fixed takes pages of any range; else a page has to
  * cover half of the white, and a report warns if that is less than 99.9 %.
  *

@@ -31,7 +31,9 @@
             "extinction coefficient, in place of material"                     \
     }
 
-/** Settles eta and k, NaN where they were not given.  False and the reason:
+/** Settles eta and k, NaN where they were not given, for wavelengths or for R,
+ * G, B.  True with a warning in err where a colour is not quite the metal's;
+ * err is left alone where there is none.  False and the reason:
  * both ways given, only one of eta and k, no such page, a band out of its
  * range, or eta = k = 0. */
 bool metal_settle(const char *model, const char *material, struct spectrum *eta,

@@ -90,6 +90,62 @@ static void ior_prints_the_write_ups_calcium(void **state)
     assert_has(output, "339.68 to 1653.12 nm");
 }
 
+static void ior_finds_where_the_write_ups_numbers_come_from(void **state)
+{
+    (void)state;
+    assert_int_equal(sh("bsdf-info ior --match 0.29294/0.28568/0.28733 "
+                        "2.7181/2.3479/1.8333 | grep -v '^#' | cut -f 1,2"),
+                     0);
+    assert_string_equal(output, "Ca/Mathewson\t614\nCa/Mathewson\t549\n"
+                                "Ca/Mathewson\t466\n");
+}
+
+static void gold_is_out_of_gamut_and_says_so(void **state)
+{
+    (void)state;
+    assert_int_equal(sh("bsdf-info ior Au --rgb all | cut -f 1,11"), 0);
+    assert_has(output, "spectral\t0.00");
+    assert_has(output, "614, 549, 466 nm\t6.35");
+    assert_has(output, "warning: R: the spectrum has F0 = 1.0377");
+    assert_int_equal(sh("bsdf-info eval conductor:material=Au </dev/null "
+                        "2>&1 >/dev/null"),
+                     0);
+    assert_has(output, "bsdf-info: warning: conductor: R:");
+    assert_int_equal(sh("bsdf-info eval conductor:material=Ca </dev/null "
+                        "2>&1 >/dev/null"),
+                     0);
+    assert_string_equal(output, "");
+}
+
+static void exports_and_citations_are_written(void **state)
+{
+    (void)state;
+    assert_int_equal(sh("bsdf-info ior Ca --as mitsuba"), 0);
+    assert_has(output, "<spectrum name=\"eta\" value=\"360:0.412815, ");
+    assert_int_equal(sh("bsdf-info ior Ca --as pbrt"), 0);
+    assert_has(output, "\"spectrum k\" [ 360 1.23545  365 ");
+    assert_int_equal(sh("bsdf-info ior Cu --as openpbr-f82"), 0);
+    assert_has(output, "base_color = 0.931");
+    assert_int_equal(sh("bsdf-info ior Ca --as cpp"), 0);
+    assert_has(output, "constexpr double eta[3] = { 0.30187, ");
+    assert_int_equal(sh("bsdf-info cite Ca"), 0);
+    assert_has(output, "@article{Mathewson1971,");
+    assert_has(output, "Polyanskiy2024");
+}
+
+static void albedo_tells_energy_from_radiance(void **state)
+{
+    (void)state;
+    /* Glass without loss from above: T / eta^2 + R in radiance. */
+    assert_int_equal(sh("bsdf-info albedo dielectric:int_ior=1.5,ext_ior=1 "
+                        "--wo 0,0 -n 1e5 | grep '^G' | cut -f 2,4"),
+                     0);
+    double energy, radiance;
+    assert_int_equal(sscanf(output, "%lf %lf", &energy, &radiance), 2);
+    assert_close(energy, 1, 1e-6);
+    assert_close(radiance, 0.04 + 0.96 / 2.25, 5 * 2e-3);
+}
+
 static void eval_takes_lines_and_keeps_comments(void **state)
 {
     (void)state;
@@ -130,7 +186,7 @@ static void samples_repeat_with_their_seed(void **state)
            "head -n 54 $T/a | cmp - $T/b && ! cmp -s $T/b $T/c"),
         0);
     assert_int_equal(sh("head -n 2 $T/a; sed -n 3p $T/a"), 0);
-    assert_has(output, "614, 549, 466 nm");
+    assert_has(output, "R, G, B (fit)");
     assert_has(output, "seed: 7");
 }
 
@@ -150,6 +206,17 @@ static void wrong_requests_are_status_two(void **state)
     refused("bsdf-info ior Cq", "Cq", "Ca");
     refused("bsdf-info ior Ca --nm 5000", "5000", "1653.12");
     refused("bsdf-info ior Ca --nm x", "wavelengths", "\"x\"");
+    refused("bsdf-info ior Ca --rgb fitt", "fitt", "average");
+    refused("bsdf-info ior Ca --rgb fixed:1,2", "2 wavelengths", "three");
+    refused("bsdf-info ior SiO2 --rgb fit", "SiO2", "k");
+    refused("bsdf-info ior Ca --as mitsubb", "did you mean \"mitsuba\"", "");
+    refused("bsdf-info ior --match 1/2 1/2/3", "ETA", "three values");
+    refused("bsdf-info ior --match 1/2/3 1/2/x", "K", "three values");
+    refused("bsdf-info ior --match 1/2/3", "expected ETA and K", "");
+    refused("bsdf-info eval diffuse --rgb all", "--rgb all", "ior NAME");
+    refused("bsdf-info albedo diffuse", "--wo", "");
+    refused("bsdf-info cite Cq", "Cq", "Ca");
+    refused("bsdf-validate diffuse --rgb x", "\"x\"", "fixed:A,B,C");
     refused("bsdf-info ior Ca --ior-path $T/none", "--ior-path", "none");
     refused("bsdf-info list a b c", "too many", "");
     refused("bsdf-validate", "expected a SPEC", "");
@@ -198,6 +265,7 @@ static void validate_says_sound_or_not(void **state)
     assert_int_equal(sh("grep -c '\"verdict\": \"pass\"' $T/v.json"), 0);
     assert_string_equal(output, "65\n");
     assert_int_equal(sh("bsdf-validate course_microfacet:material=Au "
+                        "--nm 614,549,466 "
                         "--samples 1e4 --wo 85,0 --json $T/v.json"),
                      1);
     assert_has(output, "1.32784/1.14691/0.644822");
@@ -303,6 +371,14 @@ int main(void)
           list_names_models_keys_and_materials },
         { "ior prints the write-up's calcium",
           ior_prints_the_write_ups_calcium },
+        { "ior finds where the write-up's numbers come from",
+          ior_finds_where_the_write_ups_numbers_come_from },
+        { "gold is out of gamut and says so",
+          gold_is_out_of_gamut_and_says_so },
+        { "exports and citations are written",
+          exports_and_citations_are_written },
+        { "albedo tells energy from radiance",
+          albedo_tells_energy_from_radiance },
         { "eval takes lines and keeps comments",
           eval_takes_lines_and_keeps_comments },
         { "eval names the line that is wrong",

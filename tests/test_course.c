@@ -12,7 +12,7 @@
 static struct bsdf *made(const char *spec)
 {
     struct err err;
-    struct bsdf *b = bsdf_new(spec, &bands_default, &err);
+    struct bsdf *b = bsdf_new(spec, &bands_fixed, &err);
     if (!b)
         fail_msg("%s", err.text);
     return b;

@@ -176,9 +176,9 @@ static void calcium(void **state)
     struct err err = { "" };
     struct spectrum eta, k;
     (void)state;
-    if (!ior_lookup("Ca", &bands_default, &eta, &k, &err))
+    if (!ior_lookup("Ca", &bands_fixed, &eta, &k, &err))
         fail_msg("%s", err.text);
-    for (int b = 0; b < bands_default.count; b++) {
+    for (int b = 0; b < bands_fixed.count; b++) {
         assert_near(eta.band[b], calcium_n[b], 5e-6);
         assert_near(k.band[b], calcium_k[b], 5e-6);
     }

@@ -18,6 +18,7 @@ enum {
     OPT_WO,
     OPT_THREADS,
     OPT_NM,
+    OPT_RGB,
     OPT_IOR_PATH,
     OPT_LIST
 };
@@ -67,9 +68,9 @@ static const struct argp_option options[] = {
       "as many as there are, if not given; "
       "the verdicts do not depend on it",
       0 },
-    { "nm", OPT_NM, "A,B,C", 0,
-      "the bands, one to four wavelengths; "
-      "614,549,466",
+    { "nm", OPT_NM, "A,B,C", 0, "bands: one to four wavelengths", 0 },
+    { "rgb", OPT_RGB, "METHOD", 0,
+      "bands: R, G, B by fit (if neither is given), average or fixed:A,B,C",
       0 },
     { "ior-path", OPT_IOR_PATH, "DIR", 0,
       "a refractiveindex.info database "
@@ -117,6 +118,9 @@ static error_t option(int key, char *arg, struct argp_state *state)
         break;
     case OPT_NM:
         ok = bands_parse(&r->bands, arg, &err);
+        break;
+    case OPT_RGB:
+        ok = bands_parse_rgb(&r->bands, arg, &err);
         break;
     case OPT_IOR_PATH:
         ok = cli_ior_path(arg, &err);
@@ -177,6 +181,8 @@ int main(int argc, char **argv)
         bsdf[i] = bsdf_new(r.spec[i], &r.bands, &err);
         if (!bsdf[i])
             goto fail;
+        if (err.text[0])
+            fprintf(stderr, "bsdf-validate: warning: %s\n", err.text);
     }
     if (!run_checks(&run, &r.plan, (const struct bsdf *const *)bsdf, r.specs,
                     r.wo, r.wos, isatty(2) ? progress : NULL, NULL, &err))

@@ -145,15 +145,17 @@ static json_t *run_json(const struct run *run)
                                                  verdicts));
     }
     json_t *bands = json_array();
-    if (run->results > 0)
-        for (int b = 0; b < bsdf_bands(run->result[0].bsdf)->count; b++)
-            json_array_append_new(
-                bands, json_real(bsdf_bands(run->result[0].bsdf)->nm[b]));
+    char name[32];
+    for (int b = 0;
+         run->results > 0 && b < bsdf_bands(run->result[0].bsdf)->count; b++) {
+        bands_print_one(bsdf_bands(run->result[0].bsdf), b, name, sizeof name);
+        json_array_append_new(bands, json_string(name));
+    }
     return json_pack("{s:s, s:s, s:I, s:I, s:f, s:o, s:I, s:I, s:o}", "program",
                      "bsdf-validate", "version", BSDF_VERSION, "seed",
                      (json_int_t)run->plan.seed, "samples",
                      (json_int_t)run->plan.samples, "significance",
-                     run->plan.significance, "bands_nm", bands, "passed",
+                     run->plan.significance, "bands", bands, "passed",
                      (json_int_t)run->passed, "failed", (json_int_t)run->failed,
                      "results", results);
 }
