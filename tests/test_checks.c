@@ -9,10 +9,11 @@
 #include "tests/close.h"
 #include "validate/run.h"
 
-static const struct bsdf_type *const broken[] = { &type_broken_metal,
-                                                  &type_broken_diffuse,
-                                                  &type_broken_mirror };
-enum { METAL, MATT, FLAT };
+static const struct bsdf_type *const broken[] = {
+    &type_broken_metal, &type_broken_diffuse, &type_broken_mirror,
+    &type_broken_glass, &type_broken_pane,    &type_broken_mix
+};
+enum { METAL, MATT, FLAT, GLASS, PANE, MIX };
 
 /* The names of the checks that fail, in their order, with spaces between. */
 static void failures(const struct bsdf *b, const struct vec3 *wo, size_t wos,
@@ -95,6 +96,43 @@ static void the_controls_are_sound(void **state)
     expect(METAL, "fault=none,visible=true", 80, 1000000, "");
     expect(MATT, "fault=none", 50, 1000000, "");
     expect(FLAT, "fault=none", 50, 1000000, "");
+    expect(GLASS, "fault=none", 50, 1000000, "");
+    expect(GLASS, "fault=none", 140, 1000000, "");
+    expect(PANE, "fault=none", 140, 1000000, "");
+    expect(MIX, "fault=none", 50, 1000000, "");
+}
+
+static void glass_mistakes_are_caught(void **state)
+{
+    (void)state;
+    expect(GLASS, "fault=jacobian", 50, 1000000, "pdf chi2");
+    expect(GLASS, "fault=back_facing", 75, 1000000, "pdf chi2 energy");
+    expect(GLASS, "fault=same_side", 50, 1000000, "energy reciprocity");
+    expect(GLASS, "fault=unoriented", 140, 1000000, "reciprocity");
+    expect(GLASS, "fault=swapped", 50, 1000000, "pdf chi2 energy reciprocity");
+    expect(GLASS, "fault=no_share", 50, 1000000, "pdf chi2");
+    expect(GLASS, "fault=no_square", 50, 1000000, "energy reciprocity");
+}
+
+static void a_signed_cosine_in_a_pane_is_caught(void **state)
+{
+    (void)state;
+    expect(PANE, "fault=signed", 140, 100000, "pdf delta");
+}
+
+/* 1 - 0.5 R goes through where 0.5 R is reflected: an albedo of 1, reciprocal,
+ * drawn as it says.  Nothing is wrong with it but that it is not the pane that
+ * was meant, and only a reference knows that. */
+static void a_complement_needs_a_reference(void **state)
+{
+    (void)state;
+    expect(PANE, "fault=complement", 50, 100000, "");
+}
+
+static void a_mixture_that_knows_one_lobe_fails_sample(void **state)
+{
+    (void)state;
+    expect(MIX, "fault=one_lobe", 50, 1000000, "sample");
 }
 
 static void masking_of_wo_twice_is_not_reciprocal(void **state)
@@ -287,6 +325,13 @@ int main(void)
         { "sound models pass over ten seeds",
           sound_models_pass_over_many_seeds },
         { "the sound controls pass", the_controls_are_sound },
+        { "mistakes of rough glass are caught", glass_mistakes_are_caught },
+        { "a signed cosine in a pane is caught",
+          a_signed_cosine_in_a_pane_is_caught },
+        { "1 - reflectance for a transmittance needs a reference",
+          a_complement_needs_a_reference },
+        { "a mixture that knows one lobe fails sample",
+          a_mixture_that_knows_one_lobe_fails_sample },
         { "G1(wo) G1(wo) fails reciprocity",
           masking_of_wo_twice_is_not_reciprocal },
         { "another alpha sampled fails chi2",

@@ -3,10 +3,10 @@
  *   f(wo, wi) / n_o^2 = f(wi, wo) / n_i^2
  *
  * with the index on the side that a direction is on; relative to the larger
- * side, within 1e-10 and what rounding explains.  Pairs of wo with a grid, with
- * random directions, and with directions that the model samples.  A delta
- * direction's f |cos| is its pdf times its weight, and with (n_i / n_o)^2 that
- * is the same both ways.
+ * side, within 1e-7 (subject_precision) and what rounding explains.  Pairs of
+ * wo with a grid, with random directions, and with directions that the model
+ * samples.  A delta direction's f |cos| is its pdf times its weight, and with
+ * (n_i / n_o)^2 that is the same both ways.
  *
  * B. Walter et al., Microfacet Models for Refraction through Rough Surfaces,
  * EGSR 2007, sec. 3; E. Veach, Robust Monte Carlo Methods for Light Transport
@@ -31,7 +31,8 @@ static void pair(const struct subject *s, struct verdict *v, struct vec3 wi)
         if (!(larger > 1e-290) && !isnan(x + y))
             continue;
         const double off = fabs(x - y) / larger;
-        const double limit = 1e-10 + 2 * subject_rounding(s, wi, false);
+        const double limit =
+            subject_precision + 2 * subject_rounding(s, wi, false);
         if (!(off / limit > v->value / v->limit) && !isnan(off))
             continue;
         if (isnan(v->value))
@@ -96,7 +97,7 @@ static void run(const struct subject *s, struct verdict *v)
     enum { THETAS = sizeof theta_deg / sizeof *theta_deg, TURNS = 8 };
     const bool below = claims.lobes & BSDF_TRANSMISSION;
     v->unit = "relative";
-    v->limit = 1e-10;
+    v->limit = subject_precision;
     for (int k = 0; k < s->survey.deltas; k++)
         delta_pair(s, v, &s->survey.delta[k]);
     if (!(claims.lobes & ~(unsigned)BSDF_DELTA))

@@ -2,7 +2,8 @@
  *
  *   pdf = pdf(wo, wi),  weight = f(wo, wi) |cos_i| / pdf
  *
- * relative to the largest band, within 1e-10 and what rounding explains.
+ * relative to the largest band, within 1e-7 (subject_precision) and what
+ * rounding explains.
  * Chi-square tests never look at weights; this one does.
  */
 #include "validate/checks.h"
@@ -33,8 +34,8 @@ static void sample_check(const struct subject *s, struct verdict *v,
         return;
     const double pdf = bsdf_pdf(s->bsdf, s->wo, a.wi);
     const double rounding = subject_rounding(s, a.wi, true);
-    keep(v, a.wi, "pdf", fabs(a.pdf - pdf) / fmax(a.pdf, pdf), 1e-10 + rounding,
-         a.pdf, pdf);
+    keep(v, a.wi, "pdf", fabs(a.pdf - pdf) / fmax(a.pdf, pdf),
+         subject_precision + rounding, a.pdf, pdf);
 
     const struct spectrum f = bsdf_eval(s->bsdf, s->wo, a.wi);
     double most = 0;
@@ -42,7 +43,8 @@ static void sample_check(const struct subject *s, struct verdict *v,
         most = fmax(most, f.band[b] * fabs(a.wi.z) / a.pdf);
         most = fmax(most, a.weight.band[b]);
     }
-    const double limit = 1e-10 + rounding + subject_rounding(s, a.wi, false);
+    const double limit =
+        subject_precision + rounding + subject_rounding(s, a.wi, false);
     for (int b = 0; b < BANDS_MAX; b++) {
         const double expected = f.band[b] * fabs(a.wi.z) / a.pdf;
         const double off = fabs(a.weight.band[b] - expected);
@@ -62,7 +64,7 @@ static void run(const struct subject *s, struct verdict *v)
         return;
     }
     v->unit = "relative";
-    v->limit = 1e-10;
+    v->limit = subject_precision;
     const struct rng rng = subject_rng(s, STREAM_SAMPLE);
     for (uint64_t i = 0; i < DRAWS; i++)
         sample_check(s, v, rng_uniform(rng, i));

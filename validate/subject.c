@@ -34,6 +34,7 @@ struct rng subject_rng(const struct subject *s, enum stream purpose)
     return (struct rng){ s->plan->seed, hash(h, &tag, 1) };
 }
 
+const double subject_precision = 1e-7;
 const double subject_unit_error = 1e-9;
 
 /* n at most BATCH. */

@@ -81,6 +81,13 @@ void subject_draw(const struct subject *s, struct rng rng, uint64_t from,
 /** All zeros, as when the light is absorbed. */
 bool subject_refused(const struct bsdf_sample *a);
 
+/** How far two ways to the same value may differ, relative to it, whatever the
+ * direction.  1 - F and the cosine beyond the critical angle are, as most write
+ * them, roots and differences of numbers that are known to 2^-53; what is left
+ * of them near that angle has half the digits, sqrt(2^-53) = 1e-8.  Ten times
+ * that; no mistake of a formula is as small. */
+extern const double subject_precision;
+
 /** How far the length of a direction may be off 1. */
 extern const double subject_unit_error;
 
