@@ -126,11 +126,16 @@ static struct facet facet_between(const struct roughdielectric *m,
     const struct vec3 sum = vec3_add(wo, vec3_scale(t.reflects ? 1 : t.n, wi));
     t.square = vec3_dot(sum, sum);
     t.h = vec3_scale(copysign(1, sum.z) / sqrt(t.square), sum);
-    const double o = vec3_dot(wo, t.h) * copysign(1, wo.z);
-    const double i = vec3_dot(wi, t.h) * copysign(1, wi.z);
-    t.exists = o > 0 && i > 0;
-    t.co = fmin(o, 1);
-    t.ci = fmin(i, 1);
+    if (t.reflects) { /* exact, where the dot products cancel at grazing */
+        t.exists = true;
+        t.co = t.ci = fmin(sqrt(t.square) / 2, 1);
+    } else {
+        const double o = vec3_dot(wo, t.h) * copysign(1, wo.z);
+        const double i = vec3_dot(wi, t.h) * copysign(1, wi.z);
+        t.exists = o > 0 && i > 0;
+        t.co = fmin(o, 1);
+        t.ci = fmin(i, 1);
+    }
     t.share = t.reflects ? fresnel_dielectric(t.co, t.n, NULL)
                          : fresnel_dielectric_through(t.co, t.ci, t.n);
     return t;

@@ -21,6 +21,7 @@
 #include <cmocka.h>
 
 static const char eval_table[] = "tests/golden/eval.tsv";
+static const char sample_table[] = "tests/golden/sample.tsv";
 static const char fresnel_table[] = "tests/golden/fresnel.tsv";
 
 struct table {
@@ -80,7 +81,8 @@ static double relative_error(double got, double expected)
     return got == expected ? 0 : fabs(got - expected) / fabs(expected);
 }
 
-/* How far off f and pdf may be, relative to what they are.
+/* How far off f and pdf may be, relative to what they are, where nothing
+ * cancels.
  *
  * The table's directions are exact, so wo + wi is rounded once and the slope
  * over alpha is good to some eps = 1.1e-16 of itself.  In the table it is at
@@ -89,26 +91,34 @@ static double relative_error(double got, double expected)
  * cosine, of which a hundredfold is allowed. */
 static const double eval_limit = 1e-12;
 
+/* Where something cancels, the table has what one rounding, 2^-53 of the terms,
+ * does in each such step.  The longest is (wo + n wi) / |wo + n wi|, whose n,
+ * product, sum, square, two sums of squares, root and division make eight: so
+ * many are allowed in each. */
+static const double roundings = 8;
+
 struct eval_row {
     const char *spec;
     struct vec3 wo, wi;
     double expected[4]; /* f of three bands, pdf */
+    double limit[4];    /* relative */
 };
 
 static bool eval_row_next(struct table *t, struct eval_row *row)
 {
-    double x[10];
-    if (!table_row(t, &row->spec, 10, x))
+    double x[12];
+    if (!table_row(t, &row->spec, 12, x))
         return false;
     row->wo = (struct vec3){ x[0], x[1], x[2] };
     row->wi = (struct vec3){ x[3], x[4], x[5] };
     memcpy(row->expected, x + 6, sizeof row->expected);
+    for (int i = 0; i < 4; i++)
+        row->limit[i] = fmax(eval_limit, roundings * x[i < 3 ? 10 : 11]);
     return true;
 }
 
 /* How many of the four values are off, each of them reported. */
-static int eval_row_failures(const struct bsdf *b, const struct eval_row *row,
-                             double within)
+static int eval_row_failures(const struct bsdf *b, const struct eval_row *row)
 {
     static const char *const names[] = { "f[0]", "f[1]", "f[2]", "pdf" };
     const struct spectrum f = bsdf_eval(b, row->wo, row->wi);
@@ -117,7 +127,7 @@ static int eval_row_failures(const struct bsdf *b, const struct eval_row *row,
     int failures = 0;
     for (int i = 0; i < 4; i++) {
         const double error = relative_error(got[i], row->expected[i]);
-        if (error <= within) /* a NaN fails */
+        if (error <= row->limit[i]) /* a NaN fails */
             continue;
         failures++;
         print_error("%s\n  wo = %a %a %a\n  wi = %a %a %a\n"
@@ -125,7 +135,7 @@ static int eval_row_failures(const struct bsdf *b, const struct eval_row *row,
                     "limit %.3g\n",
                     row->spec, row->wo.x, row->wo.y, row->wo.z, row->wi.x,
                     row->wi.y, row->wi.z, names[i], got[i], row->expected[i],
-                    error, within);
+                    error, row->limit[i]);
     }
     return failures;
 }
@@ -139,9 +149,10 @@ static struct bsdf *made(const char *spec)
     return b;
 }
 
-static bool above_surface(const struct eval_row *row)
+/* Whether f and pdf are 0 here: nothing but an exact 0 passes. */
+static bool dark(const struct eval_row *row)
 {
-    return row->wo.z > 0 && row->wi.z > 0;
+    return row->expected[3] == 0;
 }
 
 /* A share of the table, and the least number of rows it has to have, lest a
@@ -149,7 +160,13 @@ static bool above_surface(const struct eval_row *row)
 struct share {
     const char *name; /* what the first column starts with */
     int rows;
+    int dark; /* of them */
 };
+
+static bool is_of(const char *spec, const struct share *share)
+{
+    return !strncmp(spec, share->name, strlen(share->name));
+}
 
 static void f_and_pdf_agree(void **state)
 {
@@ -157,41 +174,23 @@ static void f_and_pdf_agree(void **state)
     struct table t = table_open(eval_table);
     struct bsdf *b = NULL;
     struct eval_row row;
-    int rows = 0, failures = 0;
+    int rows = 0, darks = 0, failures = 0;
     while (eval_row_next(&t, &row)) {
-        if (strncmp(row.spec, share->name, strlen(share->name)) != 0 ||
-            !above_surface(&row))
+        if (!is_of(row.spec, share))
             continue;
         if (!b || strcmp(bsdf_spec(b), row.spec) != 0) {
             bsdf_free(b);
             b = made(row.spec);
         }
-        failures += eval_row_failures(b, &row, eval_limit);
+        failures += eval_row_failures(b, &row);
         rows++;
+        darks += dark(&row);
     }
     bsdf_free(b);
     table_close(&t);
     assert_int_equal(failures, 0);
     assert_true(rows >= share->rows);
-}
-
-static void nothing_below(void **state)
-{
-    const struct share *share = *state;
-    struct table t = table_open(eval_table);
-    struct eval_row row;
-    int rows = 0, failures = 0;
-    while (eval_row_next(&t, &row)) {
-        if (above_surface(&row))
-            continue;
-        struct bsdf *b = made(row.spec);
-        failures += eval_row_failures(b, &row, 0);
-        bsdf_free(b);
-        rows++;
-    }
-    table_close(&t);
-    assert_int_equal(failures, 0);
-    assert_true(rows >= share->rows);
+    assert_true(darks >= share->dark);
 }
 
 static void rows_are_there(void **state)
@@ -201,9 +200,112 @@ static void rows_are_there(void **state)
     struct eval_row row;
     int rows = 0;
     while (eval_row_next(&t, &row))
-        rows += !strncmp(row.spec, share->name, strlen(share->name));
+        rows += is_of(row.spec, share);
     table_close(&t);
     assert_true(rows >= share->rows);
+}
+
+struct sample_row {
+    const char *spec;
+    struct vec3 wo;
+    double begin, end; /* of u.z */
+    struct bsdf_sample expected;
+    double wi_limit, pdf_limit; /* absolute */
+};
+
+static bool sample_row_next(struct table *t, struct sample_row *row)
+{
+    double x[14];
+    if (!table_row(t, &row->spec, 14, x))
+        return false;
+    row->wo = (struct vec3){ x[0], x[1], x[2] };
+    row->begin = x[3];
+    row->end = x[4];
+    row->expected = (struct bsdf_sample){
+        .wi = { x[5], x[6], x[7] },
+        .pdf = x[8],
+        .weight = { { x[9], x[10], x[11] } },
+        .delta = x[8] > 0, /* or absorbed */
+    };
+    /* One rounding of 1 on top, for 1 - R and wo.x / n. */
+    row->wi_limit = roundings * (DBL_EPSILON / 2 + x[12]);
+    row->pdf_limit = roundings * (DBL_EPSILON / 2 + x[13]);
+    return true;
+}
+
+static bool sample_agrees(const struct sample_row *row,
+                          const struct bsdf_sample *got)
+{
+    const struct bsdf_sample *want = &row->expected;
+    bool agrees = got->delta == want->delta &&
+                  fabs(got->wi.x - want->wi.x) <= row->wi_limit &&
+                  fabs(got->wi.y - want->wi.y) <= row->wi_limit &&
+                  fabs(got->wi.z - want->wi.z) <= row->wi_limit &&
+                  fabs(got->pdf - want->pdf) <= row->pdf_limit;
+    for (int i = 0; i < 3; i++)
+        agrees &= relative_error(got->weight.band[i], want->weight.band[i]) <=
+                  eval_limit;
+    return agrees;
+}
+
+static void sample_print(const char *what, const struct bsdf_sample *s)
+{
+    print_error("  %s: wi %.17g %.17g %.17g, pdf %.17g, "
+                "weight %.17g %.17g %.17g, %s\n",
+                what, s->wi.x, s->wi.y, s->wi.z, s->pdf, s->weight.band[0],
+                s->weight.band[1], s->weight.band[2],
+                s->delta ? "delta" : "not delta");
+}
+
+/* Draws just behind where the branch begins, in its middle and just before it
+ * ends; how many of them are off, each of them reported.  0 and 1 are exact. */
+static int sample_row_failures(const struct bsdf *b,
+                               const struct sample_row *row)
+{
+    const double low = row->begin > 0 ? row->begin + row->pdf_limit : 0;
+    const double high =
+        row->end < 1 ? row->end - row->pdf_limit : 1 - DBL_EPSILON / 2;
+    const double z[] = { low, (row->begin + row->end) / 2, high };
+    int failures = 0;
+    for (int i = 0; i < 3; i++) {
+        const struct vec3 u = { 0.3719, 0.6143, z[i] };
+        const struct bsdf_sample got = bsdf_sample(b, row->wo, u);
+        if (sample_agrees(row, &got))
+            continue;
+        failures++;
+        print_error("%s\n  wo = %a %a %a, u.z = %.17g, limits %.3g of wi, "
+                    "%.3g of pdf\n",
+                    row->spec, row->wo.x, row->wo.y, row->wo.z, z[i],
+                    row->wi_limit, row->pdf_limit);
+        sample_print("sampled", &got);
+        sample_print("expected", &row->expected);
+    }
+    return failures;
+}
+
+static void samples_agree(void **state)
+{
+    const struct share *share = *state;
+    struct table t = table_open(sample_table);
+    struct bsdf *b = NULL;
+    struct sample_row row;
+    int rows = 0, absorbed = 0, failures = 0;
+    while (sample_row_next(&t, &row)) {
+        if (!is_of(row.spec, share))
+            continue;
+        if (!b || strcmp(bsdf_spec(b), row.spec) != 0) {
+            bsdf_free(b);
+            b = made(row.spec);
+        }
+        failures += sample_row_failures(b, &row);
+        rows++;
+        absorbed += !row.expected.delta;
+    }
+    bsdf_free(b);
+    table_close(&t);
+    assert_int_equal(failures, 0);
+    assert_true(rows >= share->rows);
+    assert_true(absorbed >= share->dark);
 }
 
 static double schlick(double c, double eta, double r0)
@@ -288,10 +390,20 @@ static void fresnel_agrees(void **state)
 
 int main(void)
 {
-    static struct share all = { "", 400 }, below = { "", 24 };
-    static struct share lambertian = { "diffuse:", 12 };
-    static struct share rough = { "roughconductor:", 280 };
-    static struct share course = { "course_microfacet:", 180 };
+    static struct share all = { "", 1200, 110 };
+    static struct share lambertian = { "diffuse:", 17, 4 };
+    static struct share rough = { "roughconductor:", 300, 16 };
+    static struct share frosted = { "roughdielectric:", 600, 45 };
+    static struct share blend = { "blendbsdf:", 60, 27 };
+    static struct share two = { "twosided:", 36, 18 };
+    static struct share course = { "course_microfacet:", 202, 8 };
+    static struct share smooth[] = {
+        { "mirror:", 10, 5 },          { "conductor:", 30, 15 },
+        { "refraction:", 60, 20 },     { "dielectric:", 280, 40 },
+        { "thindielectric:", 100, 0 }, { "twosided:", 20, 0 },
+        { "course_mirror:", 20, 10 },  { "course_refraction:", 60, 20 },
+        { "course_glass:", 180, 0 },
+    };
     static struct fresnel of_conductor = { { "conductor", 100 },
                                            fresnel_conductor,
                                            limit_opaque };
@@ -305,16 +417,38 @@ int main(void)
                                             dielectric,
                                             limit_dielectric };
     const struct CMUnitTest tests[] = {
-        { "the table of f and pdf has 400 rows or more", rows_are_there,
+        { "the table of f and pdf has 1200 rows or more", rows_are_there,
           .initial_state = &all },
         { "diffuse agrees with fifty digits", f_and_pdf_agree,
           .initial_state = &lambertian },
         { "roughconductor agrees with fifty digits", f_and_pdf_agree,
           .initial_state = &rough },
+        { "roughdielectric agrees with fifty digits", f_and_pdf_agree,
+          .initial_state = &frosted },
+        { "blendbsdf agrees with fifty digits", f_and_pdf_agree,
+          .initial_state = &blend },
+        { "twosided agrees with fifty digits", f_and_pdf_agree,
+          .initial_state = &two },
         { "course_microfacet agrees with fifty digits", f_and_pdf_agree,
           .initial_state = &course },
-        { "f and pdf are 0 where a direction is not above the surface",
-          nothing_below, .initial_state = &below },
+        { "a mirror's samples agree with fifty digits", samples_agree,
+          .initial_state = &smooth[0] },
+        { "conductor's samples agree with fifty digits", samples_agree,
+          .initial_state = &smooth[1] },
+        { "refraction's samples agree with fifty digits", samples_agree,
+          .initial_state = &smooth[2] },
+        { "dielectric's samples agree with fifty digits", samples_agree,
+          .initial_state = &smooth[3] },
+        { "thindielectric's samples agree with fifty digits", samples_agree,
+          .initial_state = &smooth[4] },
+        { "twosided's samples agree with fifty digits", samples_agree,
+          .initial_state = &smooth[5] },
+        { "course_mirror's samples agree with fifty digits", samples_agree,
+          .initial_state = &smooth[6] },
+        { "course_refraction's samples agree with fifty digits", samples_agree,
+          .initial_state = &smooth[7] },
+        { "course_glass's samples agree with fifty digits", samples_agree,
+          .initial_state = &smooth[8] },
         { "the conductor's Fresnel term agrees with fifty digits",
           fresnel_agrees, .initial_state = &of_conductor },
         { "the approximate Fresnel term agrees with fifty digits",
