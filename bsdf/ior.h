@@ -7,11 +7,12 @@
  *
  * A page is what one publication says of one material, in one of these forms:
  *
- *   PAGE.yml        as in the refractiveindex.info database [1]: tables, and
- * for n any of its dispersion formulas 1 to 9 [2] NAME.eta.spd,   a pair of
- * tables as Mitsuba has them, of n and of k; either NAME.k.spd      name stands
- * for the pair .txt .csv       a table of wavelength [nm], n and maybe k;
- * likewise .dat and .nk (but Windt's IMD has angstroms in a .nk)
+ * - PAGE.yml, as in the refractiveindex.info database [1]: tables, and for n
+ *   any of its dispersion formulas 1 to 9 [2];
+ * - NAME.eta.spd and NAME.k.spd, a pair of tables as Mitsuba has them, of n and
+ *   of k, where either name stands for the pair;
+ * - .txt, .csv, .dat, .nk: a table of wavelength [nm], n and maybe k (but
+ *   Windt's IMD has angstroms in a .nk).
  *
  * A page of the first form is named MATERIAL/PAGE, as in Ca/Mathewson, after
  * the folder and the file that hold it.  Fifteen of them come along in

@@ -182,6 +182,16 @@ void figure_label(struct figure *fig, double x, double y, const char *aligned,
             y / fig->height, aligned);
 }
 
+void figure_small(struct figure *fig, double x, double y, const char *text)
+{
+    fputs("set label ", fig->script);
+    gnuplot_string(fig->script, text);
+    fprintf(fig->script,
+            " at screen %.6g,%.6g left noenhanced font \",9.5\" tc rgb "
+            "\"#505050\"\n",
+            x / fig->width, y / fig->height);
+}
+
 void figure_panel(struct figure *fig, double x0, double x1, double y0,
                   double y1)
 {

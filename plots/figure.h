@@ -48,6 +48,9 @@ void figure_page(struct figure *fig, double width, double body,
 void figure_label(struct figure *fig, double x, double y, const char *aligned,
                   const char *text);
 
+/** Small print, from the left; y is the middle of the line. */
+void figure_small(struct figure *fig, double x, double y, const char *text);
+
 /** The borders of the next plot of the page. */
 void figure_panel(struct figure *fig, double x0, double x1, double y0,
                   double y1);

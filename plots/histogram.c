@@ -710,10 +710,9 @@ static bool run(const struct plot_request *r, struct figure_made *made,
     struct figure fig;
     const double across = hypot(r->wo.x, r->wo.y);
     const struct plan plan = { .seed = r->seed, .samples = r->samples };
-    struct bsdf *b = bsdf_new(r->spec, &r->bands, err);
     struct histogram h = {
-        .bsdf = b,
-        .subject = { .bsdf = b, .wo = r->wo, .plan = &plan },
+        .bsdf = r->bsdf,
+        .subject = { .bsdf = r->bsdf, .wo = r->wo, .plan = &plan },
         .wo = r->wo,
         .ahead = across > 0
                      ? (struct vec3){ -r->wo.x / across, -r->wo.y / across, 0 }
@@ -721,14 +720,13 @@ static bool run(const struct plot_request *r, struct figure_made *made,
         .side = 1,
         .samples = r->samples,
     };
-    bool ok = b && histogram_make(&h, err) && figure_open(&fig, r->output, err);
+    bool ok = histogram_make(&h, err) && figure_open(&fig, r->output, err);
     if (ok) {
         table_write(fig.table, &h);
         script_write(&fig, &h);
         ok = figure_draw(&fig, made, err);
     }
     free(h.cell);
-    bsdf_free(b);
     return ok;
 }
 

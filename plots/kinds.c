@@ -1,4 +1,5 @@
 /* kinds.c - the list of plots */
 #include "plots/kinds.h"
 
-const struct plot *const plots[] = { &plot_lobe, &plot_histogram, NULL };
+const struct plot *const plots[] = { &plot_lobe, &plot_lobe3d, &plot_histogram,
+                                     &plot_ior, NULL };

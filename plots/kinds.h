@@ -10,20 +10,27 @@
 #include "plots/figure.h"
 
 struct plot_request {
-    const char *spec;
+    const struct bsdf *bsdf; /* borrowed; NULL for a plot of pages */
+    const char *pages;       /* names, separated by commas; or NULL */
     struct bands bands;
     struct vec3 wo;
     uint64_t seed, samples;
-    const char *output; /* ends in .svg, .pdf or .png */
+    double lo_nm, hi_nm; /* both 0 where the plot is to choose */
+    const char *output;  /* ends in .svg, .pdf or .png */
 };
+
+enum plot_subject { PLOT_MODEL, PLOT_PAGES }; /* of optical constants */
 
 struct plot {
     const char *name, *about;
+    enum plot_subject subject;
+
+    /* True with a warning in err where there is one, which else is left. */
     bool (*run)(const struct plot_request *r, struct figure_made *made,
                 struct err *err);
 };
 
-extern const struct plot plot_lobe, plot_histogram;
+extern const struct plot plot_lobe, plot_lobe3d, plot_histogram, plot_ior;
 
 /** All of them; the last is NULL. */
 extern const struct plot *const plots[];

@@ -14,12 +14,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bsdf/rng.h"
 #include "plots/axis.h"
+#include "plots/key.h"
+#include "plots/pilots.h"
 #include "plots/table.h"
-#include "validate/subject.h"
 
-enum { POINTS_MAX = 60000, DRAWS = 4096, DRAWS_APART = 16, CLOSER = 30 };
+enum { POINTS_MAX = 60000, DRAWS_APART = 16, CLOSER = 30 };
 
 /* What a line may be off in the middle of an interval, and how far neighbours
  * may be apart; both of the largest value. */
@@ -44,9 +44,9 @@ struct lobe {
     size_t points;
     double most[2 * BANDS_MAX]; /* largest values */
     size_t odd; /* angles where a value is not a finite number */
+    bool same;  /* all bands are, everywhere */
 
-    struct delta delta[DELTAS_MAX];
-    int deltas;
+    struct pilots pilots;
 };
 
 static struct vec3 direction(const struct lobe *l, double theta_deg)
@@ -144,43 +144,31 @@ static size_t closer(double *theta, double to)
     return n;
 }
 
-static void delta_add(struct lobe *l, const struct bsdf_sample *a)
+/* Angles of some of the pilots; returns how many. */
+static size_t drawn(const struct lobe *l, double *theta)
 {
-    for (int k = 0; k < l->deltas; k++)
-        if (vec3_dot(a->wi, l->delta[k].wi) > 1 - 1e-12)
-            return;
-    if (l->deltas < DELTAS_MAX)
-        l->delta[l->deltas++] =
-            (struct delta){ .wi = a->wi, .pdf = a->pdf, .weight = a->weight };
-}
-
-/* Angles where directions are drawn, and the single directions among these.
- * theta has room for all of the draws; returns how many it got. */
-static size_t drawn(struct lobe *l, double *theta, uint64_t seed)
-{
-    const struct plan plan = { .seed = seed };
-    const struct subject s = { .bsdf = l->bsdf, .wo = l->wo, .plan = &plan };
-    const struct rng rng = subject_rng(&s, STREAM_PILOT);
-    size_t n = 0, kept = 0;
-    for (uint64_t i = 0; i < DRAWS; i++) {
-        const struct bsdf_sample a =
-            bsdf_sample(l->bsdf, l->wo, rng_uniform(rng, i));
-        if (!(vec3_dot(a.wi, a.wi) > 0.5))
-            continue;
-        if (a.delta)
-            delta_add(l, &a);
-        else
-            theta[n++] = angle(l, a.wi);
-    }
-    qsort(theta, n, sizeof *theta, ascending);
-    for (size_t i = 0; i < n; i += DRAWS_APART)
+    size_t kept = 0;
+    for (size_t i = 0; i < l->pilots.n; i++)
+        theta[i] = angle(l, l->pilots.wi[i]);
+    qsort(theta, l->pilots.n, sizeof *theta, ascending);
+    for (size_t i = 0; i < l->pilots.n; i += DRAWS_APART)
         theta[kept++] = theta[i];
     return kept;
 }
 
-static bool trace(struct lobe *l, uint64_t seed, struct err *err)
+/* Whether no band is unlike the first. */
+static bool all_same(const struct lobe *l)
 {
-    enum { GRID = 360, ANGLES = GRID + 1 + DRAWS + 4 * (2 * CLOSER + 1) };
+    for (size_t i = 0; i < l->points; i++)
+        for (int b = 1; b < l->bands; b++)
+            if (l->point[i].f[b] != l->point[i].f[0])
+                return false;
+    return true;
+}
+
+static bool trace(struct lobe *l, struct err *err)
+{
+    enum { GRID = 360, ANGLES = GRID + 1 + PILOTS_MAX + 4 * (2 * CLOSER + 1) };
     double *theta = malloc(ANGLES * sizeof *theta);
     struct point *next = malloc(POINTS_MAX * sizeof *next);
     l->point = malloc(POINTS_MAX * sizeof *l->point);
@@ -196,7 +184,7 @@ static bool trace(struct lobe *l, uint64_t seed, struct err *err)
     n += closer(theta + n, l->mirror_deg);
     n += closer(theta + n, 90);
     n += closer(theta + n, -90);
-    n += drawn(l, theta + n, seed);
+    n += drawn(l, theta + n);
     qsort(theta, n, sizeof *theta, ascending);
     for (size_t i = 0; i < n; i++)
         if (fabs(theta[i]) <= l->limit_deg &&
@@ -204,6 +192,7 @@ static bool trace(struct lobe *l, uint64_t seed, struct err *err)
             l->point[l->points++] = at(l, theta[i]);
     while (refine(l, next))
         ;
+    l->same = all_same(l);
     ok = true;
 done:
     free(theta);
@@ -224,24 +213,21 @@ static void table_write(FILE *out, const struct lobe *l)
             l->wo_deg == 0 ? "> 0 toward phi = 0"
                            : "< 0 on the side of wo, > 0 on that of its mirror "
                              "direction");
-    for (size_t b = 0; b < n; b++)
-        fprintf(out, "\tf [1/sr] at %.10g nm", bands->nm[b]);
-    for (size_t b = 0; b < n; b++)
-        fprintf(out, "\tf |cos theta_i| [1/sr] at %.10g nm", bands->nm[b]);
+    table_columns(out, bands, "f [1/sr]");
+    table_columns(out, bands, "f |cos theta_i| [1/sr]");
     fputc('\n', out);
     for (size_t i = 0; i < l->points; i++) {
         double row[1 + 2 * BANDS_MAX] = { l->point[i].theta_deg };
         memcpy(row + 1, l->point[i].f, 2 * n * sizeof *row);
         table_row(out, row, 1 + 2 * n);
     }
-    if (l->deltas == 0)
+    if (l->pilots.deltas == 0)
         return;
     fputs("\n\n# single directions\n# theta_i [deg]\tprobability [1]", out);
-    for (size_t b = 0; b < n; b++)
-        fprintf(out, "\tweight [1] at %.10g nm", bands->nm[b]);
+    table_columns(out, bands, "weight [1]");
     fputc('\n', out);
-    for (int k = 0; k < l->deltas; k++) {
-        const struct delta *d = &l->delta[k];
+    for (int k = 0; k < l->pilots.deltas; k++) {
+        const struct delta *d = &l->pilots.delta[k];
         double row[2 + BANDS_MAX] = { angle(l, d->wi), d->pdf };
         memcpy(row + 2, d->weight.band, n * sizeof *row);
         table_row(out, row, 2 + n);
@@ -279,6 +265,8 @@ static int hue_of(double nm)
 /* By the wavelength, or by rank where two bands would look the same. */
 static const char *colour_of(const struct bands *bands, int band)
 {
+    if (bands->kind != BANDS_NM)
+        return hue[band];
     bool clash = false;
     int rank = 0;
     for (int b = 0; b < bands->count; b++) {
@@ -317,13 +305,6 @@ static struct scale scale_of(const struct lobe *l, bool cosine)
     return s;
 }
 
-/* What lines and arrows look like, in the plots and in the key. */
-static const char wo_look[] =
-    "head filled size screen 0.011,20 lc rgb \"#000000\" lw 1.5";
-static const char mirror_look[] = "nohead lc rgb \"#a8a8a8\" lw 6";
-static const char delta_look[] =
-    "head filled size screen 0.014,18 lc rgb \"#000000\" lw 2.5";
-
 struct look {
     char text[64];
 };
@@ -332,17 +313,23 @@ static struct look band_look(const struct lobe *l, int b)
 {
     static const char *const dash[] = { "1", "(12,7)", "(3,4)", "(12,4,3,4)" };
     static const double width[] = { 2.2, 2, 2.2, 1.6 };
-    struct look look;
-    snprintf(look.text, sizeof look.text, "lc rgb \"%s\" dt %s lw %g",
-             colour_of(bsdf_bands(l->bsdf), b), dash[b], width[b]);
+    struct look look = { "lc rgb \"#303030\" lw 2.2" };
+    if (!l->same)
+        snprintf(look.text, sizeof look.text, "lc rgb \"%s\" dt %s lw %g",
+                 colour_of(bsdf_bands(l->bsdf), b), dash[b], width[b]);
     return look;
+}
+
+static int curves_of(const struct lobe *l)
+{
+    return l->same ? 1 : l->bands;
 }
 
 /* A curve a band, in units of one [1/sr], for a plot command to go on with. */
 static void curves(FILE *out, const struct lobe *l, bool cosine, bool polar,
                    double one)
 {
-    for (int b = 0; b < l->bands; b++) {
+    for (int b = 0; b < curves_of(l); b++) {
         const int column = 2 + cosine * l->bands + b;
         fprintf(out, "%s     table index 0 using ", b ? ", \\\n" : "");
         if (polar)
@@ -400,14 +387,14 @@ static void marks(FILE *out, const struct lobe *l)
         "(1.012*cos(%.10g)):(0.075*sin(%.10g)):(0.075*cos(%.10g)) with vectors "
         "%s";
     const double m = l->mirror_deg, w = l->wo_deg;
-    fprintf(out, at_rim, m, m, m, m, mirror_look);
+    fprintf(out, at_rim, m, m, m, m, key_mirror);
     fputs(", \\\n", out);
-    fprintf(out, at_rim, w, w, w, w, wo_look);
-    if (l->deltas > 0)
+    fprintf(out, at_rim, w, w, w, w, key_wo);
+    if (l->pilots.deltas > 0)
         fprintf(out,
                 ", \\\n     table index 1 using (0):(0):(sin($1)):(cos($1)) "
                 "with vectors %s",
-                delta_look);
+                key_delta);
     fputc('\n', out);
 }
 
@@ -427,11 +414,16 @@ static void disk(struct figure *fig, const struct lobe *l,
     if (most(l, s->cosine) > 0)
         fprintf(out,
                 "set label \"%s [%s]\" at 0,1.38 center\n"
-                "do for [i=0:%d] {\n"
-                "    set label sprintf(\"%%g\", i*%.10g) at i/%d.,-0.09 center "
-                "tc rgb \"#505050\"\n"
+                "do for [i=%d:%d] {\n"
+                "    set label sprintf(\"%%g\", i*%.10g) at %si/%d.,-0.09 "
+                "center tc rgb \"#505050\"\n"
                 "}\n",
-                s->what, s->unit_text, s->steps, s->step / s->unit, s->steps);
+                s->what, s->unit_text, half ? 0 : 1, s->steps,
+                s->step / s->unit, half ? "" : "-", s->steps);
+    if (!half) /* the surface, and the numbers where lobes are rare */
+        fputs("set arrow from -1,0 to 1,0 nohead back lc rgb \"#707070\" lw "
+              "1.2\n",
+              out);
     rings(out, half, s->steps);
     if (most(l, s->cosine) > 0) {
         curves(out, l, s->cosine, true, s->step * s->steps);
@@ -519,79 +511,61 @@ static void close_up(struct figure *fig, const struct lobe *l,
 
 /* -- the page -------------------------------------------------------------- */
 
-enum { KEY_LINE = 30, KEY_GAP = 7, KEY_APART = 24 };
-
-/* About what a text takes. */
-static double text_width(const char *text)
-{
-    const double letter = 7.2;
-    size_t letters = 0;
-    for (; *text; text++)
-        letters += ((unsigned char)*text & 0xc0) != 0x80;
-    return letter * (double)letters;
-}
-
-/* gnuplot's own key is no wider than a panel. */
 static void key(struct figure *fig, const struct lobe *l, double y)
 {
-    struct {
-        char look[96], text[32];
-    } entry[BANDS_MAX + 3];
-    const struct bands *bands = bsdf_bands(l->bsdf);
+    struct key_entry entry[BANDS_MAX + 3] = { { .look = "" } };
     int n = 0;
-    for (int b = 0; b < l->bands && most(l, false) > 0; b++, n++) {
+    for (int b = 0; b < curves_of(l) && most(l, false) > 0; b++, n++) {
         snprintf(entry[n].look, sizeof entry[n].look, "nohead %s",
                  band_look(l, b).text);
-        snprintf(entry[n].text, sizeof entry[n].text, "%.10g nm", bands->nm[b]);
+        if (l->same && l->bands > 1)
+            strcpy(entry[n].text, "all bands");
+        else
+            bands_print_one(bsdf_bands(l->bsdf), b, entry[n].text,
+                            sizeof entry[n].text);
     }
-    const char *const others[][2] = { { wo_look, "ωₒ" },
-                                      { mirror_look, "mirror direction" },
-                                      { delta_look, "δ" } };
-    for (int i = 0; i < 2 + (l->deltas > 0); i++, n++) {
+    const char *const others[][2] = { { key_wo, "ωₒ" },
+                                      { key_mirror, "mirror direction" },
+                                      { key_delta, "δ" } };
+    for (int i = 0; i < 2 + (l->pilots.deltas > 0); i++, n++) {
         snprintf(entry[n].look, sizeof entry[n].look, "%s", others[i][0]);
         snprintf(entry[n].text, sizeof entry[n].text, "%s", others[i][1]);
     }
-    double width = -KEY_APART;
-    for (int i = 0; i < n; i++)
-        width += KEY_LINE + KEY_GAP + text_width(entry[i].text) + KEY_APART;
-    double x = (PAGE - width) / 2;
-    for (int i = 0; i < n; i++) {
-        fprintf(fig->script,
-                "set arrow from screen %.6g,%.6g to screen %.6g,%.6g %s\n",
-                x / fig->width, y / fig->height, (x + KEY_LINE) / fig->width,
-                y / fig->height, entry[i].look);
-        x += KEY_LINE + KEY_GAP;
-        figure_label(fig, x, y, "left", entry[i].text);
-        x += text_width(entry[i].text) + KEY_APART;
-    }
+    key_draw(fig, entry, n, y);
 }
 
-static void notes(struct figure *fig, const struct lobe *l, double y)
+struct notes {
+    char text[DELTAS_MAX + 3][256];
+    int lines;
+};
+
+static struct notes notes_of(const struct lobe *l)
 {
-    char text[256];
-    const bool normal = l->wo_deg == 0;
-    snprintf(text, sizeof text, "θᵢ: angle of ωᵢ to the normal; %s",
-             normal ? "positive toward φ = 0"
-                    : "negative on the side of ωₒ, positive on the side of its "
-                      "mirror direction");
-    figure_label(fig, PAGE / 2., y, "center", text);
-    for (int k = 0; k < l->deltas; k++) {
-        const struct delta *d = &l->delta[k];
-        int n = snprintf(text, sizeof text,
-                         "δ at θᵢ = %.6g°: probability %.4g, weight",
-                         angle(l, d->wi), d->pdf);
-        for (int b = 0; b < l->bands; b++)
-            n += snprintf(text + n, sizeof text - (size_t)n, "%s %.4g",
-                          b ? "," : "", d->weight.band[b]);
-        figure_label(fig, PAGE / 2., y - LINE * (k + 1), "center", text);
+    enum { SIZE = sizeof((struct notes *)0)->text[0] };
+    struct notes n = { .lines = 0 };
+    snprintf(n.text[n.lines++], SIZE, "θᵢ: angle of ωᵢ to the normal; %s",
+             l->wo_deg == 0 ? "positive toward φ = 0"
+                            : "negative on the side of ωₒ, positive on the "
+                              "side of its mirror direction");
+    if (l->limit_deg > 90 && most(l, true) > 0) {
+        double side[2] = { 0, 0 };
+        for (size_t i = 0; i < l->points; i++)
+            for (int b = 0; b < l->bands; b++) {
+                const bool below = fabs(l->point[i].theta_deg) > 90;
+                side[below] = fmax(side[below], l->point[i].f[l->bands + b]);
+            }
+        snprintf(n.text[n.lines++], SIZE,
+                 "largest f |cos θᵢ|: %.4g/sr above the surface, %.4g/sr below",
+                 side[0], side[1]);
     }
-    if (l->odd > 0) {
-        snprintf(text, sizeof text,
+    for (int k = 0; k < l->pilots.deltas; k++)
+        delta_text(&l->pilots.delta[k], l->bands,
+                   angle(l, l->pilots.delta[k].wi), n.text[n.lines++], SIZE);
+    if (l->odd > 0)
+        snprintf(n.text[n.lines++], SIZE,
                  "f is infinite or not a number at %zu of %zu angles", l->odd,
                  l->points);
-        figure_label(fig, PAGE / 2., y - LINE * (l->deltas + 1), "center",
-                     text);
-    }
+    return n;
 }
 
 static void script_write(struct figure *fig, const struct lobe *l)
@@ -599,7 +573,8 @@ static void script_write(struct figure *fig, const struct lobe *l)
     FILE *out = fig->script;
     const struct angles wo = dir_to_degrees(l->wo);
     const bool any = most(l, false) > 0, zoomed = narrow(l);
-    const double foot = 8 + (1 + l->deltas + (l->odd > 0)) * LINE;
+    const struct notes notes = notes_of(l);
+    const double foot = 8 + notes.lines * LINE;
     const double above_key = foot + KEY + (zoomed ? ZOOM : 0);
     const double centre = above_key + (l->limit_deg == 90 ? BELOW : BACK);
     char below[200], bands[96];
@@ -607,7 +582,9 @@ static void script_write(struct figure *fig, const struct lobe *l)
     snprintf(below, sizeof below, "ωₒ: θ = %.6g°, φ = %.6g°;  %s", wo.theta_deg,
              wo.phi_deg, bands);
     figure_page(fig, PAGE, centre + ABOVE, bsdf_spec(l->bsdf), below);
-    notes(fig, l, foot - LINE / 2.);
+    for (int i = 0; i < notes.lines; i++)
+        figure_label(fig, PAGE / 2., foot - LINE * (i + 0.5), "center",
+                     notes.text[i]);
     key(fig, l, above_key - KEY / 2.);
     fputs("unset border; unset tics; unset key\n", out);
     for (int cosine = 0; cosine < 1 + any; cosine++) {
@@ -623,9 +600,10 @@ static void script_write(struct figure *fig, const struct lobe *l)
     }
 }
 
-static bool lobe_init(struct lobe *l, const struct bsdf *b,
-                      const struct plot_request *r, struct err *err)
+static bool lobe_init(struct lobe *l, const struct plot_request *r,
+                      struct err *err)
 {
+    const struct bsdf *b = r->bsdf;
     const double across = hypot(r->wo.x, r->wo.y);
     const struct angles wo = dir_to_degrees(r->wo);
     const bool back =
@@ -639,11 +617,12 @@ static bool lobe_init(struct lobe *l, const struct bsdf *b,
         .wo_deg = -wo.theta_deg,
         .mirror_deg = wo.theta_deg,
         .limit_deg = back ? 180 : 90,
-        .bands = r->bands.count,
+        .bands = bsdf_bands(b)->count,
     };
-    if (!trace(l, r->seed, err))
+    pilots_draw(&l->pilots, b, r->wo, r->seed);
+    if (!trace(l, err))
         return false;
-    return most(l, false) > 0 || l->deltas > 0 ||
+    return most(l, false) > 0 || l->pilots.deltas > 0 ||
            err_set(err,
                    "lobe: f is not above 0 anywhere in the plane of incidence "
                    "of theta %.6g, phi %.6g deg; there is nothing to draw",
@@ -654,17 +633,17 @@ static bool run(const struct plot_request *r, struct figure_made *made,
                 struct err *err)
 {
     struct figure fig;
-    struct lobe l = { 0 };
-    struct bsdf *b = bsdf_new(r->spec, &r->bands, err);
-    bool ok =
-        b && lobe_init(&l, b, r, err) && figure_open(&fig, r->output, err);
+    struct lobe *l = calloc(1, sizeof *l);
+    bool ok = (l || err_set(err, "out of memory")) && lobe_init(l, r, err) &&
+              figure_open(&fig, r->output, err);
     if (ok) {
-        table_write(fig.table, &l);
-        script_write(&fig, &l);
+        table_write(fig.table, l);
+        script_write(&fig, l);
         ok = figure_draw(&fig, made, err);
     }
-    free(l.point);
-    bsdf_free(b);
+    if (l)
+        free(l->point);
+    free(l);
     return ok;
 }
 

@@ -9,22 +9,31 @@
 #include "bsdf/cli.h"
 #include "plots/kinds.h"
 
-enum { OPT_NM = 1, OPT_IOR_PATH, OPT_WO, OPT_SEED, OPT_SAMPLES };
+enum {
+    OPT_NM = 1,
+    OPT_RGB,
+    OPT_IOR_PATH,
+    OPT_WO,
+    OPT_SEED,
+    OPT_SAMPLES,
+    OPT_RANGE
+};
 
 struct request {
     struct plot_request plot;
     bool has_wo;
-    const char *arg[2]; /* the kind and the spec */
+    const char *arg[2]; /* the kind, and a spec or names */
     int args;
 };
 
 const char *argp_program_version = "bsdf-plot " BSDF_VERSION;
 static const char about[] =
-    "Draws scattering models."
+    "Draws scattering models, and the optical constants that they are made of."
     "\vBeside the picture lie its numbers (.tsv) and the script that draws it "
-    "again (.gp, for gnuplot).  A SPEC is name or name:key=value,...; "
-    "`bsdf-info list` names the models and their keys.  Exit status: 0, or 2 "
-    "if the request was wrong or gnuplot failed.";
+    "again (.gp, for gnuplot).  A SPEC is name or name:key=value,...; a NAME "
+    "is a material like Ca, a page like Ca/Mathewson, or a file.  `bsdf-info "
+    "list` names the models, their keys and the materials.  Exit status: 0, "
+    "or 2 if the request was wrong or gnuplot failed.";
 
 static const struct argp_option options[] = {
     { "wo", OPT_WO, "THETA,PHI", 0, "outgoing direction [deg]", 0 },
@@ -33,12 +42,36 @@ static const struct argp_option options[] = {
     { "samples", OPT_SAMPLES, "N", 0, "drawn for a histogram, 1000 to 1e9; 1e6",
       0 },
     { "seed", OPT_SEED, "S", 0, "of the random numbers; 1", 0 },
-    { "nm", OPT_NM, "A,B,C", 0,
-      "the bands, one to four wavelengths; 614,549,466", 0 },
+    { "nm", OPT_NM, "A,B,C", 0, "the bands: one to four wavelengths", 0 },
+    { "rgb", OPT_RGB, "METHOD", 0,
+      "the bands: R, G, B by fit (if neither is given), average or fixed:A,B,C",
+      0 },
+    { "range", OPT_RANGE, "LO,HI", 0,
+      "of wavelengths in nm; what there is from 360 to 830", 0 },
     { "ior-path", OPT_IOR_PATH, "DIR", 0,
       "a refractiveindex.info database (or BSDF_IOR_PATH)", 0 },
     { 0 },
 };
+
+/* "LO,HI" in nm. */
+static bool range_read(struct plot_request *r, const char *text,
+                       struct err *err)
+{
+    char *end;
+    const double lo = strtod(text, &end);
+    const bool comma = end != text && *end == ',';
+    const char *second = comma ? end + 1 : text;
+    const double hi = strtod(second, &end);
+    if (!comma || end == second || *end != '\0' ||
+        !(lo > 0 && hi > lo && hi <= 1e9))
+        return err_set(err,
+                       "--range \"%.80s\": expected two rising wavelengths in "
+                       "(0, 1e9] nm, as in 360,830",
+                       text);
+    r->lo_nm = lo;
+    r->hi_nm = hi;
+    return true;
+}
 
 static error_t option(int key, char *arg, struct argp_state *state)
 {
@@ -48,6 +81,12 @@ static error_t option(int key, char *arg, struct argp_state *state)
     switch (key) {
     case OPT_NM:
         ok = bands_parse(&r->plot.bands, arg, &err);
+        break;
+    case OPT_RGB:
+        ok = bands_parse_rgb(&r->plot.bands, arg, &err);
+        break;
+    case OPT_RANGE:
+        ok = range_read(&r->plot, arg, &err);
         break;
     case OPT_IOR_PATH:
         ok = cli_ior_path(arg, &err);
@@ -120,6 +159,31 @@ static const struct plot *kind(const char *name, struct err *err)
     return NULL;
 }
 
+static void warn(const struct err *err)
+{
+    if (err->text[0])
+        fprintf(stderr, "bsdf-plot: warning: %s\n", err->text);
+}
+
+/* Makes the model, if the plot is of one, and draws. */
+static bool draw_of(const struct plot *plot, struct request *r,
+                    struct figure_made *made, struct err *err)
+{
+    if (plot->subject == PLOT_PAGES) {
+        r->plot.pages = r->arg[1];
+        return plot->run(&r->plot, made, err);
+    }
+    struct bsdf *b = bsdf_new(r->arg[1], &r->plot.bands, err);
+    if (!b)
+        return false;
+    warn(err);
+    err->text[0] = '\0';
+    r->plot.bsdf = b;
+    const bool ok = plot->run(&r->plot, made, err);
+    bsdf_free(b);
+    return ok;
+}
+
 static bool draw(struct request *r, struct figure_made *made, struct err *err)
 {
     char name[64];
@@ -129,16 +193,17 @@ static bool draw(struct request *r, struct figure_made *made, struct err *err)
                             "roughconductor:material=Ca --wo 45,0");
     if (!plot)
         return false;
+    const bool model = plot->subject == PLOT_MODEL;
     if (r->args == 1)
-        return err_set(err, "%s: expected a SPEC", plot->name);
-    if (!r->has_wo)
+        return err_set(err, "%s: expected %s", plot->name,
+                       model ? "a SPEC" : "a NAME, or several: NAME,NAME");
+    if (model && !r->has_wo)
         return err_set(err, "%s: expected --wo THETA,PHI in degrees",
                        plot->name);
     snprintf(name, sizeof name, "%s.svg", plot->name);
     if (!r->plot.output)
         r->plot.output = name;
-    r->plot.spec = r->arg[1];
-    return plot->run(&r->plot, made, err);
+    return draw_of(plot, r, made, err);
 }
 
 int main(int argc, char **argv)
@@ -147,17 +212,20 @@ int main(int argc, char **argv)
         .plot = { .bands = bands_default, .seed = 1, .samples = 1000000 }
     };
     struct figure_made made = { .paths = 0 };
-    struct err err;
+    struct err err = { "" };
     gsl_set_error_handler_off();
     argp_err_exit_status = EXIT_REQUEST;
-    argp_parse(
-        &(struct argp){ options, option, "KIND SPEC", about, 0, help, 0 }, argc,
-        argv, 0, NULL, &r);
+    argp_parse(&(struct argp){ options, option,
+                               "KIND SPEC\nKIND NAME[,NAME...]", about, 0, help,
+                               0 },
+               argc, argv, 0, NULL, &r);
     bool ok = draw(&r, &made, &err);
     for (int i = 0; i < made.paths; i++)
         puts(made.path[i]);
     fputs(made.said, stderr);
-    if (!ok)
+    if (ok)
+        warn(&err);
+    else
         fprintf(stderr, "bsdf-plot: %s\n", err.text);
     figure_made_clear(&made);
     if (fflush(stdout) != 0 || ferror(stdout)) {

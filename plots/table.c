@@ -69,6 +69,16 @@ void table_head(FILE *out, const struct bsdf *b, struct vec3 wo)
     table_comment(out, "bands", text);
 }
 
+void table_columns(FILE *out, const struct bands *bands, const char *what)
+{
+    char name[32];
+    for (int b = 0; b < bands->count; b++) {
+        bands_print_one(bands, b, name, sizeof name);
+        fprintf(out, "\t%s %s %s", what, bands->kind == BANDS_NM ? "at" : "in",
+                name);
+    }
+}
+
 void table_row(FILE *out, const double *x, size_t n)
 {
     for (size_t i = 0; i < n; i++) {

@@ -22,6 +22,10 @@ void table_comment(FILE *out, const char *what, const char *text);
 /** Writes the comments that every table has: program, spec, wo, bands. */
 void table_head(FILE *out, const struct bsdf *b, struct vec3 wo);
 
+/** Writes a column's heading for each band: "\tWHAT at 549 nm", "\tWHAT in G".
+ */
+void table_columns(FILE *out, const struct bands *bands, const char *what);
+
 /** Writes a row; what is not a number is "nan", whatever its sign. */
 void table_row(FILE *out, const double *x, size_t n);
 

@@ -93,7 +93,7 @@ static void bins_at_the_normal_are_what_they_are(void **state)
             assert_close(v->mass[k].value, share * (p.phi1 - p.phi0) / (2 * PI),
                          1e-10);
         }
-        assert_at_most(v->total.error, 1e-7);
+        assert_at_most(v->total.error, 2e-7); /* 1e-7 is always in it */
         subject_clear(&s);
         bsdf_free(b);
     }
@@ -156,7 +156,7 @@ static void bins_agree_with_gsl(void **state)
                                   &value, NULL, NULL);
             assert_close(v->mass[k].value, value, 1e-9);
         }
-        assert_at_most(v->total.error, 1e-7);
+        assert_at_most(v->total.error, 2e-7); /* 1e-7 is always in it */
         subject_clear(&s);
         bsdf_free(b);
     }

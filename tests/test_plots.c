@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "bsdf/bsdf.h"
+#include "bsdf/ior.h"
 #include "plots/axis.h"
 #include "plots/gnuplot.h"
 #include "plots/table.h"
@@ -149,16 +150,19 @@ static double table_at(const struct table *t, size_t row, size_t column)
     return t->value[row * t->columns + column];
 }
 
-static struct table table_read(const char *name)
+/* The block that ends with so many blank lines; one of fewer is skipped. */
+static struct table table_read_block(const char *name, int ending)
 {
     struct table t = { 0, 0, NULL };
     size_t size, room = 0;
+    int blank = 0;
     char *bytes = read_all(name, &size), *rest = bytes;
     for (char *line; (line = strsep(&rest, "\n")) && rest;) {
         size_t n = 0;
-        if (*line == '\0') /* the next block is another table */
+        blank = *line == '\0' ? blank + 1 : 0;
+        if (blank == ending)
             break;
-        if (*line == '#')
+        if (*line == '#' || blank)
             continue;
         double row[COLUMNS_MAX];
         for (char *end; *line && n < COLUMNS_MAX; line = end + (*end == '\t')) {
@@ -179,6 +183,11 @@ static struct table table_read(const char *name)
     return t;
 }
 
+static struct table table_read(const char *name)
+{
+    return table_read_block(name, 1);
+}
+
 /* -- the pictures ---------------------------------------------------------- */
 
 static const char *const specs[] = {
@@ -187,19 +196,30 @@ static const char *const specs[] = {
     "diffuse:reflectance=0.2/0.5/0.8",
 };
 static const char *const forms[] = { "svg", "pdf", "png" };
-static const char *const kinds[] = { "lobe", "histogram" };
+static const char *const kinds[] = { "lobe", "histogram", "lobe3d" };
+
+/* What follows `bsdf-plot`, without the output. */
+static void request(char *line, size_t size, int i)
+{
+    static const char *const pages[] = { "Ca", "BK7,Au/Johnson,SiO2 --nm 480",
+                                         "H2O --range 300,5000" };
+    if (i % 4 == 3)
+        snprintf(line, size, "ior %s", pages[i / 4 % 3]);
+    else
+        snprintf(line, size, "%s %s --wo 57.3,%d --seed 7 --samples 30000",
+                 kinds[i % 4], specs[i / 4 % 3], 31 * i);
+}
 
 static void every_kind_in_every_form_is_whole_and_redraws_itself(void **state)
 {
     (void)state;
-    for (int i = 0; i < 18; i++) {
-        const char *kind = kinds[i % 2], *form = forms[i / 2 % 3];
-        char line[1024], name[32];
+    for (int i = 0; i < 36; i++) {
+        const char *form = forms[i / 12];
+        char line[1024], name[32], what[512];
         snprintf(name, sizeof name, "f%d.%s", i, form);
-        snprintf(
-            line, sizeof line,
-            "bsdf-plot %s %s --wo 57.3,%d --samples 30000 -o $T/%s >$T/made",
-            kind, specs[i / 6], 31 * i, name);
+        request(what, sizeof what, i);
+        snprintf(line, sizeof line, "bsdf-plot %s -o $T/%s >$T/made", what,
+                 name);
         quiet(line);
         assert_whole(name);
         snprintf(line, sizeof line,
@@ -224,14 +244,15 @@ static void every_kind_in_every_form_is_whole_and_redraws_itself(void **state)
 static void the_same_request_gives_the_same_bytes(void **state)
 {
     (void)state;
-    for (int i = 0; i < 3; i++) {
-        char line[1024];
+    for (int i = 0; i < 12; i++) {
+        char line[1024], what[512];
+        request(what, sizeof what, i);
         snprintf(line, sizeof line,
                  "cd $T; for n in 1 2; do mkdir again; cd again; TZ=XYZ$n "
-                 "OMP_NUM_THREADS=$n bsdf-plot %s %s --wo 70,10 --seed 7 "
-                 "--samples 30000 -o x.%s; cd ..; mv again again$n; done; "
-                 "diff -r again1 again2 >&2; rm -r again1 again2",
-                 kinds[i % 2], specs[i], forms[i]);
+                 "OMP_NUM_THREADS=$n bsdf-plot %s -o x.%s; cd ..; mv again "
+                 "again$n; done; diff -r again1 again2 >&2; "
+                 "rm -r again1 again2",
+                 what, forms[i % 3]);
         quiet(line);
     }
 }
@@ -305,7 +326,8 @@ static void wrong_requests_are_refused(void **state)
             "Not a directory");
     refused("bsdf-plot lobes diffuse --wo 1,0", "\"lobes\"",
             "did you mean \"lobe\"?");
-    refused("bsdf-plot none diffuse --wo 1,0", "\"none\"", "lobe, histogram");
+    refused("bsdf-plot none diffuse --wo 1,0", "\"none\"",
+            "lobe, lobe3d, histogram, ior");
     refused("bsdf-plot", "kind", "SPEC");
     refused("bsdf-plot lobe", "lobe", "SPEC");
     refused("bsdf-plot lobe diffuse", "--wo", "degrees");
@@ -317,6 +339,16 @@ static void wrong_requests_are_refused(void **state)
     refused("bsdf-plot histogram mirror --wo 45,0", "delta", "no density");
     refused("bsdf-plot histogram diffuse --wo 45,0 --samples 10", "--samples",
             "[1000");
+    refused("bsdf-plot lobe3d diffuse --wo 120,0", "120", "nothing to draw");
+    refused("bsdf-plot lobe diffuse --wo 45,0 --rgb best", "\"best\"", "fit");
+    refused("bsdf-plot ior", "ior", "NAME");
+    refused("bsdf-plot ior Xx", "Xx", "Ca");
+    refused("bsdf-plot ior Ca,,Cu", "name", "missing");
+    refused("bsdf-plot ior Ca,Ca,Ca,Ca,Ca,Ca,Ca,Ca,Ca", "at most", "8");
+    refused("bsdf-plot ior Ca --range 500", "\"500\"", "360,830");
+    refused("bsdf-plot ior Ca --range 700,600", "\"700,600\"", "rising");
+    refused("bsdf-plot ior Ca --range 1e5,2e5", "100000", "1653.12");
+    refused("bsdf-plot ior Ca --range 500,600nm", "600nm", "360,830");
 }
 
 static void a_script_in_the_way_leaves_nothing(void **state)
@@ -346,7 +378,7 @@ static const struct view views[] = {
  * mirror direction; how much the table's largest value is above all of them. */
 static void assert_traced(const struct view *v, const struct table *t)
 {
-    struct bsdf *b = bsdf_new(v->spec, &bands_default, NULL);
+    struct bsdf *b = bsdf_new(v->spec, &bands_fixed, NULL);
     assert_non_null(b);
     const struct vec3 wo = dir_from_degrees(v->theta_deg, v->phi_deg);
     double most[7] = { 0 };
@@ -382,8 +414,9 @@ static void a_lobe_follows_the_model_however_narrow(void **state)
     for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
         char line[512];
         snprintf(line, sizeof line,
-                 "bsdf-plot lobe %s --wo %s -o $T/lobe%zu.svg", views[i].spec,
-                 views[i].wo, i);
+                 "bsdf-plot lobe %s --rgb fixed:614,549,466 --wo %s "
+                 "-o $T/lobe%zu.svg",
+                 views[i].spec, views[i].wo, i);
         quiet(line);
         snprintf(line, sizeof line, "lobe%zu.tsv", i);
         const struct table t = table_read(line);
@@ -394,6 +427,115 @@ static void a_lobe_follows_the_model_however_narrow(void **state)
     }
 }
 
+/* From one scan to the next and along it: the middle of the chord between two
+ * points is about where the surface is; and nothing is beyond the peak. */
+static void assert_meshed(const struct view *v, const struct table *t)
+{
+    static const double luminance[] = { 0.2126, 0.7152, 0.0722 };
+    struct bsdf *b = bsdf_new(v->spec, &bands_default, NULL);
+    assert_non_null(b);
+    const struct vec3 wo = dir_from_degrees(v->theta_deg, v->phi_deg);
+    size_t width = 1;
+    double most = 0;
+    while (table_at(t, width, 0) == table_at(t, 0, 0))
+        width++;
+    assert_int_equal(t->rows % width, 0);
+    for (size_t i = 0; i < t->rows; i++)
+        most = fmax(most, table_at(t, i, 2));
+    assert_true(most > 0);
+    for (size_t i = 0; i < t->rows; i++) {
+        const size_t next[] = { i + 1, i + width };
+        for (int k = 0; k < 3; k++) {
+            const size_t j = k < 2 ? next[k] : i;
+            if (j >= t->rows || (k == 0 && j % width == 0))
+                continue;
+            const double theta = (table_at(t, i, 0) + table_at(t, j, 0)) / 2;
+            const double phi = (table_at(t, i, 1) + table_at(t, j, 1)) / 2;
+            const struct vec3 wi = dir_from_degrees(theta, phi);
+            const struct spectrum f = bsdf_eval(b, wo, wi);
+            double truth = 0;
+            for (int c = 0; c < 3; c++)
+                truth += luminance[c] * f.band[c] * wi.z;
+            assert_at_most(truth, most * (1 + 1e-9));
+            if (k == 2)
+                assert_close(table_at(t, i, 2), truth, 1e-6 * most);
+            const struct vec3 p =
+                dir_from_degrees(table_at(t, i, 0), table_at(t, i, 1));
+            const struct vec3 q =
+                dir_from_degrees(table_at(t, j, 0), table_at(t, j, 1));
+            const struct vec3 chord =
+                vec3_add(vec3_scale(table_at(t, i, 2) / most, p),
+                         vec3_scale(table_at(t, j, 2) / most, q));
+            const double middle = truth / most;
+            /* the middle in angle may be away from that of the chord along it,
+             * by no more than half of its length */
+            assert_at_most(fabs(middle - vec3_length(chord) / 2), 0.045);
+        }
+    }
+    bsdf_free(b);
+}
+
+static void a_surface_follows_the_model_however_narrow(void **state)
+{
+    (void)state;
+    static const struct view seen[] = {
+        { "roughconductor:material=Ca,alpha=0.01", "45,0", 45, 0 },
+        { "roughconductor:material=Ca,alpha=0.001", "70,-100", 70, -100 },
+        { "roughconductor:material=Ca,alpha=0.01", "0,0", 0, 0 },
+        { "diffuse", "30,200", 30, 200 },
+    };
+    for (size_t i = 0; i < sizeof seen / sizeof *seen; i++) {
+        char line[512];
+        snprintf(line, sizeof line,
+                 "bsdf-plot lobe3d %s --wo %s -o $T/surface%zu.svg",
+                 seen[i].spec, seen[i].wo, i);
+        quiet(line);
+        snprintf(line, sizeof line, "surface%zu.tsv", i);
+        const struct table t = table_read_block(line, 2);
+        assert_int_equal(t.columns, 6);
+        assert_true(t.rows < 10000);
+        assert_meshed(&seen[i], &t);
+        free(t.value);
+    }
+}
+
+static void both_sides_of_glass_are_there(void **state)
+{
+    (void)state;
+    quiet("cd $T; bsdf-plot lobe3d roughdielectric:alpha=0.2 --wo 135,10 -o "
+          "glass.svg; grep -q '^# above the surface' glass.tsv; grep -q '^# "
+          "below the surface' glass.tsv; grep -q 'maximum below the surface: "
+          "2.8135/sr' glass.svg; bsdf-plot lobe3d thindielectric --wo 45,0 -o "
+          "thin.svg; grep -q 'δ at θᵢ = 135°' thin.svg");
+}
+
+static void bands_are_named_as_they_are(void **state)
+{
+    (void)state;
+    quiet("cd $T; s=diffuse:reflectance=0.2/0.5/0.8; "
+          "bsdf-plot lobe $s --wo 45,0 -o rgb.svg; "
+          "grep -q '^# bands: R, G, B (fit)$' rgb.tsv; "
+          "grep -q '1/sr. in G' rgb.tsv; grep -q '>G<' rgb.svg; "
+          "bsdf-plot lobe $s --wo 45,0 --rgb fixed:600,550,450 -o nm.svg; "
+          "grep -q '1/sr. at 550 nm' nm.tsv; grep -q '>550 nm<' nm.svg; "
+          "bsdf-plot lobe diffuse --wo 45,0 -o same.svg; "
+          "grep -q '>all bands<' same.svg; ! grep -q '>G<' same.svg");
+}
+
+static void a_colour_that_is_not_quite_met_is_warned_of(void **state)
+{
+    (void)state;
+    assert_int_equal(sh("cd $T; bsdf-plot lobe roughconductor:material=Au "
+                        "--wo 45,0 -o gold.svg 2>&1 >gold.out"),
+                     0);
+    assert_has(output, "bsdf-plot: warning: ");
+    assert_has(output, "F0");
+    assert_whole("gold.svg");
+    assert_int_equal(sh("cd $T; bsdf-plot ior Au -o gold.svg 2>&1 >gold.out"),
+                     0);
+    assert_has(output, "bsdf-plot: warning: ");
+}
+
 /* Of a sound model: counts spread about what is expected as they should. */
 static void residuals_are_those_of_chance(void **state)
 {
@@ -401,7 +543,8 @@ static void residuals_are_those_of_chance(void **state)
     for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
         char line[512];
         snprintf(line, sizeof line,
-                 "bsdf-plot histogram %s --wo %s -o $T/h%zu.svg --samples 3e5",
+                 "bsdf-plot histogram %s --wo %s --nm 614,549,466 "
+                 "-o $T/h%zu.svg --samples 3e5",
                  views[i].spec, views[i].wo, i);
         quiet(line);
         snprintf(line, sizeof line, "h%zu.tsv", i);
@@ -455,6 +598,61 @@ static void a_mirror_is_an_arrow_with_its_weight(void **state)
           "grep -A 2 'single directions' $T/m.tsv | tail -n 1 >$T/row; "
           "printf '45\\t1\\t0.25\\t0.5\\t1\\n' | cmp - $T/row");
     quiet("grep -q 'probability 1, weight 0.25, 0.5, 1' $T/m.svg");
+}
+
+/* Every row in range and one to each side of it. */
+static void rows_are_those_of_the_page(void **state)
+{
+    (void)state;
+    struct err err;
+    struct ior_page *page = ior_find("Ca", NULL, &err);
+    assert_non_null(page);
+    const struct ior_table n = ior_page_n(page);
+    quiet("bsdf-plot ior Ca --range 450,700 -o $T/ca.svg; "
+          "! grep -q '^set logscale' $T/ca.gp");
+    const struct table t = table_read_block("ca.tsv", 2);
+    size_t first = 0;
+    while (n.nm[first + 1] < 450)
+        first++;
+    assert_true(table_at(&t, 0, 0) < 450);
+    assert_true(table_at(&t, 1, 0) >= 450);
+    assert_true(table_at(&t, t.rows - 1, 0) > 700);
+    assert_true(table_at(&t, t.rows - 2, 0) <= 700);
+    for (size_t i = 0; i < t.rows; i++) {
+        assert_close(table_at(&t, i, 0), n.nm[first + i], 0);
+        assert_close(table_at(&t, i, 1), n.value[first + i], 0);
+    }
+    free(t.value);
+    ior_page_free(page);
+}
+
+static void a_formula_is_drawn_as_what_it_gives(void **state)
+{
+    (void)state;
+    struct ior_page *page = ior_find("SiO2", NULL, NULL);
+    assert_non_null(page);
+    quiet("bsdf-plot ior SiO2 -o $T/sio2.svg");
+    const struct table t = table_read("sio2.tsv");
+    for (size_t i = 0; i < t.rows; i++) {
+        double n, k;
+        assert_true(ior_page_at(page, table_at(&t, i, 0), &n, &k, NULL));
+        assert_close(table_at(&t, i, 1), n, 0);
+    }
+    assert_close(table_at(&t, 0, 0), 360, 0);
+    assert_close(table_at(&t, t.rows - 1, 0), 830, 0);
+    free(t.value);
+    ior_page_free(page);
+}
+
+static void a_page_is_cited_and_its_bands_are_marked(void **state)
+{
+    (void)state;
+    quiet("cd $T; bsdf-plot ior Ca,BK7 --nm 614,549 -o two.svg; "
+          "grep -q 'Physica Scripta 4' two.svg; grep -q '>549 nm<' two.svg; "
+          "grep -q 'Ca/Mathewson, 339.68–1653.12 nm' two.svg; "
+          "grep -q '^set logscale y' two.gp; "
+          "bsdf-plot ior Ca --rgb average -o one.svg; "
+          "grep -q '>G<' one.svg; grep -q '(average)' one.svg");
 }
 
 /* -- the parts ------------------------------------------------------------- */
@@ -542,6 +740,17 @@ int main(void)
           a_script_in_the_way_leaves_nothing },
         { "a lobe follows the model however narrow",
           a_lobe_follows_the_model_however_narrow },
+        { "a surface follows the model however narrow",
+          a_surface_follows_the_model_however_narrow },
+        { "both sides of glass are there", both_sides_of_glass_are_there },
+        { "bands are named as they are", bands_are_named_as_they_are },
+        { "a colour that is not quite met is warned of",
+          a_colour_that_is_not_quite_met_is_warned_of },
+        { "rows are those of the page", rows_are_those_of_the_page },
+        { "a formula is drawn as what it gives",
+          a_formula_is_drawn_as_what_it_gives },
+        { "a page is cited and its bands are marked",
+          a_page_is_cited_and_its_bands_are_marked },
         { "residuals are those of chance", residuals_are_those_of_chance },
         { "a whole hemisphere adds up", a_whole_hemisphere_adds_up },
         { "a mirror is an arrow with its weight",

@@ -25,7 +25,7 @@ enum {
 enum { WO_MAX = 256, SPECS_MAX = 256 };
 
 /* Some hundred directions of --all, in less than a minute on two cores. */
-static const uint64_t all_samples = 200000;
+static const uint64_t all_samples = 100000;
 
 struct request {
     struct plan plan;
@@ -57,7 +57,7 @@ static const struct argp_option options[] = {
       0 },
     { "samples", OPT_SAMPLES, "N", 0,
       "drawn for each model and direction, "
-      "1000 to 1e9; 1e6, or 2e5 with --all",
+      "1000 to 1e9; 1e6, or 1e5 with --all",
       0 },
     { "seed", OPT_SEED, "S", 0, "of the random numbers; 1", 0 },
     { "significance", OPT_SIGNIFICANCE, "A", 0,

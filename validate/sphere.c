@@ -102,7 +102,7 @@ struct estimate
 hemisphere_facing(double (*f)(struct vec3 w, const void *context),
                   const void *context, struct vec3 wo, double tolerance)
 {
-    enum { RINGS = 25, STEPS = 10, MARKS = 7, EDGES = 2 * STEPS * MARKS };
+    enum { RINGS = 19, STEPS = 8, MARKS = 7, EDGES = 2 * STEPS * MARKS };
     const struct facing j = { f, context, wo };
     struct estimate total = { 0, 0 };
     long budget = 20000000;

@@ -34,7 +34,7 @@ void patch_integrate(sphere_fn *f, const void *context, int parts,
                      const struct vec3 *hint, size_t n, struct estimate *out);
 
 /** The integral over the upper hemisphere of a function that may peak at the
- * normal, down to a width of 1e-7 rad, and along the x and y axes. */
+ * normal, down to a width of 1e-5 rad, and along the x and y axes. */
 struct estimate hemisphere(double (*f)(struct vec3 w, const void *context),
                            const void *context);
 

@@ -32,7 +32,7 @@ struct survey {
     struct partition *partition;
     struct estimate *mass; /* integral of the pdf over each bin */
     uint64_t *count;       /* samples in each bin */
-    struct estimate total; /* sum of the masses */
+    struct estimate total; /* sum of the masses; the error is 1e-7 of it more */
 
     uint64_t samples; /* drawn: bins + refused + stray + deltas */
     uint64_t refused; /* all zeros */

@@ -8,7 +8,7 @@ set output picture
 set multiplot
 
 set label "roughconductor:material=Ca,alpha=0.25" at screen 0.5,0.963362 center noenhanced
-set label "ωₒ: θ = 45°, φ = 0°;  614, 549, 466 nm;  1000000 samples, seed 1" at screen 0.5,0.924569 center noenhanced
+set label "ωₒ: θ = 45°, φ = 0°;  R, G, B (fit);  1000000 samples, seed 1" at screen 0.5,0.924569 center noenhanced
 set label "θ: angle of ωᵢ to the normal; φ′: its azimuth from that of the mirror direction; cross: mirror direction of ωₒ" at screen 0.5,0.12069 center noenhanced
 set label "In the window: 99.31% of the samples, 99.31% expected; refused: 0.624%" at screen 0.5,0.0840517 center noenhanced
 set label "O observed, E expected in a cell; residual left blank where E < 5: there O = 733, E = 715.52 in all" at screen 0.5,0.0474138 center noenhanced
