@@ -1,4 +1,4 @@
-# Makefile - build, set up, try and test; `make help` lists the targets
+# Makefile - build, set up, try, test and install; `make help` lists the targets
 #
 # Everything made goes under build/, the programs into build/bin/.  The
 # variables below can be given on the command line, as in
@@ -22,8 +22,11 @@ else ifeq ($(config),sanitize)
 B     := build/sanitize
 FLAGS := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined \
          -fno-sanitize-recover=all
+else ifeq ($(config),coverage)
+B     := build/coverage
+FLAGS := -O1 -g --coverage
 else
-$(error config=$(config): expected release, debug or sanitize)
+$(error config=$(config): expected release, debug, sanitize or coverage)
 endif
 
 CFLAGS   ?=
@@ -52,7 +55,8 @@ FOLDERS  := $(patsubst %/,%,$(wildcard bsdf/ validate/ plots/ integrator/))
 SOURCES  := $(foreach d,$(FOLDERS),$(wildcard $(d)/*.c))
 HEADERS  := $(foreach d,$(FOLDERS) tests,$(wildcard $(d)/*.h))
 TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
-HELPERS  := $(filter-out $(TESTS:%=tests/%.c),$(wildcard tests/*.c))
+BENCH    := $(wildcard tests/bench*.c)
+HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(BENCH),$(wildcard tests/*.c))
 
 objects   = $(patsubst %.c,$(B)/obj/%.o,$(1))
 libof     = $(B)/lib$(1).a
@@ -183,6 +187,74 @@ demo: setup ## from measured calcium to a verdict and pictures, in build/demo/
 gallery: all ## draw the README's pictures again
 	cd plots/gallery && ../../$(BIN)/bsdf-plot histogram '$(CALCIUM)' --wo 45,0 -o histogram.svg
 
+# -- installing ---------------------------------------------------------------
+# What is installed looks for its tables below PREFIX: the one file that knows
+# where they are is compiled again, into STAGE.  DESTDIR goes before each path
+# that is written to, and into no file.
+
+PREFIX  ?= /usr/local
+DESTDIR ?=
+STAGE   := $(B)/install
+VERSION  = $(shell sed -n 's/^\#define BSDF_VERSION "\(.*\)"/\1/p' bsdf/cli.h)
+
+# bsdf.h, and what else a renderer may want, with all that they include.
+PUBLIC  := $(patsubst %,bsdf/%.h,bands bsdf cie colour err fresnel ior ndf rng vec)
+TABLES  := $(shell find data -type f ! -name '.*')
+STAGED  := $(PROGRAMS:$(B)/bin/%=$(STAGE)/%) $(STAGE)/libbsdf.a $(STAGE)/libbsdf.pc
+# from=to, the latter below PREFIX
+INSTALLED := $(foreach f,$(PROGRAMS:$(B)/bin/%=%),$(STAGE)/$(f)=bin/$(f)) \
+             $(STAGE)/libbsdf.a=lib/libbsdf.a \
+             $(STAGE)/libbsdf.pc=lib/pkgconfig/libbsdf.pc \
+             $(foreach f,$(PUBLIC),$(f)=include/$(f)) \
+             $(foreach f,$(TABLES),$(f)=share/bsdf/$(f))
+
+# One word that starts with a slash.
+CHECK_PREFIX = $(if $(filter 1/,$(words $(PREFIX))$(patsubst /%,/,$(PREFIX))),,$\
+               $(error PREFIX=$(PREFIX): expected an absolute path without spaces))
+
+.PHONY: install uninstall always
+install: tools-found $(STAGED) ## programs, libbsdf, headers and tables, to PREFIX=/usr/local (and DESTDIR)
+	@for f in $(INSTALLED); do \
+	    to="$(DESTDIR)$(PREFIX)/$${f#*=}"; \
+	    case $$f in *=bin/*) mode=755;; *) mode=644;; esac; \
+	    mkdir -p "$$(dirname "$$to")" && \
+	        install -m $$mode "$${f%%=*}" "$$to" || exit 1; \
+	done
+	@echo "installed $(words $(INSTALLED)) files below $(DESTDIR)$(PREFIX)"
+
+# Folders such as lib/ may be others' as well, and stay.
+uninstall: ## remove what `make install` put there, given the same PREFIX and DESTDIR
+	$(CHECK_PREFIX)@for f in $(INSTALLED); do \
+	    to=$${f#*=}; \
+	    rm -f "$(DESTDIR)$(PREFIX)/$$to" || exit 1; \
+	    case $$to in include/*|share/*) \
+	        (cd "$(DESTDIR)$(PREFIX)/$${to%%/*}" && \
+	            rmdir -p "$$(dirname "$${to#*/}")") 2>/dev/null;; \
+	    esac; \
+	done; :
+
+# Made anew when PREFIX is another one than the last time.
+$(STAGE)/prefix: always
+	$(CHECK_PREFIX)@mkdir -p $(@D)
+	@echo '$(PREFIX)' | cmp -s - $@ || echo '$(PREFIX)' >$@
+
+$(STAGE)/libbsdf.a: $(call libof,bsdf) $(STAGE)/prefix
+	$(SAY) AR $@
+	$(Q)$(COMPILE) -UBSDF_DATA_DIR -DBSDF_DATA_DIR='"$(PREFIX)/share/bsdf/data"' \
+	    -c -o $(STAGE)/cie.o bsdf/cie.c
+	$(Q)cp $< $@ && ar r $@ $(STAGE)/cie.o
+
+$(STAGE)/libbsdf.pc: bsdf/libbsdf.pc.in bsdf/cli.h Makefile $(STAGE)/prefix
+	$(Q)sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|' $< >$@
+
+define staged
+$(STAGE)/$(PROGRAM_$(1)): $(B)/obj/$(1)/main.o \
+    $(LIBRARIES:$(call libof,bsdf)=$(STAGE)/libbsdf.a)
+	$$(SAY) LINK $$@
+	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(LIBS)
+endef
+$(foreach m,$(MAINS),$(eval $(call staged,$(m:/main.c=))))
+
 # -- tests --------------------------------------------------------------------
 
 .PHONY: test run-tests headers
@@ -208,6 +280,47 @@ valgrind: test ## the tests that malformed input goes through, under valgrind
 	@$(MAKE) --no-print-directory run-tests TESTS='$(filter test_spec test_ior test_cli,$(TESTS))' \
 	    WRAP='valgrind -q --error-exitcode=99 --leak-check=full --trace-children=no'
 
+# By file as well with V=1.
+define COVERAGE
+$$1 == "File" { name = substr($$2, 2, length($$2) - 2) }
+/^Lines executed/ && name ~ /\.c$$/ {
+    hit = int(substr($$2, 10) / 100 * $$4 + 0.5)
+    folder = name
+    sub("/.*", "", folder)
+    if ("$(V)" != "")
+        print row(name, $$4, hit)
+    lines[folder] += $$4; hits[folder] += hit
+    lines_all += $$4; hits_all += hit
+}
+{ if (!/^File/) name = "" }
+function row(name, lines, hits) {
+    return sprintf("%-28s%8d%9d%9.1f %%", name, lines, hits,
+        lines ? 100 * hits / lines : 0)
+}
+END {
+    printf "%-28s%8s%9s%11s\n", "", "lines", "reached", "share"
+    fflush()
+    for (f in lines)
+        print row(f "/", lines[f], hits[f]) | "sort"
+    close("sort")
+    print row("all", lines_all, hits_all)
+}
+endef
+export COVERAGE
+GCOV ?= gcov
+
+.PHONY: coverage
+coverage: ## run the tests and count the lines that they reach, by folder (gcc)
+	@find build/coverage -name '*.gcda' -delete 2>/dev/null; \
+	$(MAKE) --no-print-directory config=coverage test; status=$$?; \
+	$(GCOV) -n $(SOURCES:%.c=build/coverage/obj/%.gcno) 2>/dev/null | \
+	    awk "$$COVERAGE"; exit $$status
+
+.PHONY: bench
+bench: tools-found ## what calls, a chi-square and bin masses cost, as ratios and in ns
+	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/bench
+	@build/bin/tests/bench
+
 .PHONY: golden
 golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)
 	@[ -x build/venv/bin/python ] || python3 -m venv build/venv
@@ -217,7 +330,7 @@ golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)
 
 # -- order --------------------------------------------------------------------
 
-C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(HELPERS)
+C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(BENCH) $(HELPERS)
 
 # Off where it is wrong about C: widths of products that are small, arrays of
 # pointers, OpenMP's clauses; or a matter of taste.

@@ -10,6 +10,7 @@
  * compared with it, so that a name cannot lead out of them.
  */
 #include "bsdf/ior.h"
+#include "bsdf/cie.h"
 #include "bsdf/ior_page.h"
 
 #include <assert.h>
@@ -20,10 +21,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-#ifndef BSDF_DATA_DIR
-#define BSDF_DATA_DIR "data"
-#endif
 
 /* The database has its materials at most three folders down, and 3,720 pages of
  * them; a loop of links has more. */
@@ -275,9 +272,7 @@ struct roots {
 
 static bool in_tree(char root[PATH_MAX], struct err *err)
 {
-    const char *data = getenv("BSDF_DATA");
-    if (!data || !*data)
-        data = BSDF_DATA_DIR;
+    const char *data = data_folder();
     if (!join(root, data, "ior") || !is_folder(root))
         return err_set(err,
                        "%.400s/ior: no such folder, and the optical constants "

@@ -1,0 +1,542 @@
+/* bench.c - what the models, a chi-square and the masses of bins cost
+ *
+ * One thread; medians of several runs, in which what is compared takes turns.
+ * Ratios come first, as they can be compared between machines.
+ *
+ * The baseline of the masses is what usual chi-square tests do: a trapezoidal
+ * rule of 32 x 32 intervals on every bin, over the angles.  The reference, not
+ * timed, is a product of 16-point Gauss-Legendre rules that quarters a bin
+ * until it agrees with its quarters, and shares nothing with
+ * validate/quadrature.c.
+ */
+#include <gsl/gsl_integration.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "validate/checks.h"
+
+enum {
+    DIRECTIONS = 4096,
+    BATCH = 256,
+    RUNS = 31,
+    CHI2_RUNS = 5,
+    MASS_RUNS = 15
+};
+enum { OPS = 3, MODELS = 4, LOBES = 2 };
+
+static const struct bands bands = { .count = 3, .nm = { 614, 549, 466 } };
+
+static const struct {
+    const char *name, *spec;
+} models[MODELS] = {
+    { "diffuse", "diffuse:reflectance=0.5" },
+    { "roughconductor beckmann", "roughconductor:material=Ca,alpha=0.25" },
+    { "roughconductor ggx",
+      "roughconductor:material=Ca,alpha=0.25,distribution=ggx" },
+    { "roughdielectric beckmann", "roughdielectric:int_ior=1.5,alpha=0.25" },
+}, lobes[LOBES] = {
+    { "beckmann", "roughconductor:material=Ca,alpha=0.005" },
+    { "ggx", "roughconductor:material=Ca,alpha=0.005,distribution=ggx" },
+};
+
+/* -- time ------------------------------------------------------------------ */
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *time, size_t n)
+{
+    qsort(time, n, sizeof *time, by_size);
+    return time[n / 2];
+}
+
+static void *or_exit(void *made, const char *why)
+{
+    if (!made) {
+        fprintf(stderr, "bench: %s\n", why);
+        exit(1);
+    }
+    return made;
+}
+
+static struct bsdf *make(const char *spec)
+{
+    struct err err;
+    return or_exit(bsdf_new(spec, &bands, &err), err.text);
+}
+
+static struct subject look(const struct bsdf *b, struct vec3 wo,
+                           const struct plan *plan)
+{
+    struct subject s;
+    struct err err;
+    or_exit(subject_init(&s, b, wo, plan, &err) ? &s : NULL, err.text);
+    return s;
+}
+
+/* -- one call, or many at once --------------------------------------------- */
+
+/* Each as x, y, z. */
+struct inputs {
+    double wo[3][DIRECTIONS], wi[3][DIRECTIONS], u[3][DIRECTIONS];
+};
+
+static struct dirs from(const double d[3][DIRECTIONS], size_t at)
+{
+    return (struct dirs){ d[0] + at, d[1] + at, d[2] + at };
+}
+
+static void put(double d[3][DIRECTIONS], size_t i, struct vec3 w)
+{
+    d[0][i] = w.x, d[1][i] = w.y, d[2][i] = w.z;
+}
+
+/* wo uniform over the upper hemisphere, wi drawn by the model. */
+static void fill(struct inputs *in, const struct bsdf *b)
+{
+    const struct rng rng = { 1, 2 };
+    for (uint64_t i = 0, draw = 0; i < DIRECTIONS; draw++) {
+        const struct vec3 v = rng_uniform(rng, 2 * draw);
+        const struct vec3 u = rng_uniform(rng, 2 * draw + 1);
+        const double z = 1 - v.x, r = sqrt(1 - z * z);
+        const struct vec3 wo = { r * cos(2 * PI * v.y), r * sin(2 * PI * v.y),
+                                 z };
+        const struct bsdf_sample a = bsdf_sample(b, wo, u);
+        if (subject_refused(&a))
+            continue;
+        put(in->wo, i, wo);
+        put(in->wi, i, a.wi);
+        put(in->u, i++, u);
+    }
+}
+
+static double sample_one(const struct bsdf *b, const struct inputs *in)
+{
+    const struct dirs wo = from(in->wo, 0), u = from(in->u, 0);
+    double sum = 0;
+    for (size_t i = 0; i < DIRECTIONS; i++)
+        sum += bsdf_sample(b, dirs_at(wo, i), dirs_at(u, i)).pdf;
+    return sum;
+}
+
+static double sample_many(const struct bsdf *b, const struct inputs *in)
+{
+    struct bsdf_sample a[BATCH];
+    double sum = 0;
+    for (size_t at = 0; at < DIRECTIONS; at += BATCH) {
+        bsdf_sample_many(b, BATCH, from(in->wo, at), from(in->u, at), a);
+        for (size_t i = 0; i < BATCH; i++)
+            sum += a[i].pdf;
+    }
+    return sum;
+}
+
+static double pdf_one(const struct bsdf *b, const struct inputs *in)
+{
+    const struct dirs wo = from(in->wo, 0), wi = from(in->wi, 0);
+    double sum = 0;
+    for (size_t i = 0; i < DIRECTIONS; i++)
+        sum += bsdf_pdf(b, dirs_at(wo, i), dirs_at(wi, i));
+    return sum;
+}
+
+static double pdf_many(const struct bsdf *b, const struct inputs *in)
+{
+    double pdf[BATCH], sum = 0;
+    for (size_t at = 0; at < DIRECTIONS; at += BATCH) {
+        bsdf_pdf_many(b, BATCH, from(in->wo, at), from(in->wi, at), pdf);
+        for (size_t i = 0; i < BATCH; i++)
+            sum += pdf[i];
+    }
+    return sum;
+}
+
+static double eval_one(const struct bsdf *b, const struct inputs *in)
+{
+    const struct dirs wo = from(in->wo, 0), wi = from(in->wi, 0);
+    double sum = 0;
+    for (size_t i = 0; i < DIRECTIONS; i++)
+        sum += bsdf_eval(b, dirs_at(wo, i), dirs_at(wi, i)).band[0];
+    return sum;
+}
+
+static double eval_many(const struct bsdf *b, const struct inputs *in)
+{
+    struct spectrum f[BATCH];
+    double sum = 0;
+    for (size_t at = 0; at < DIRECTIONS; at += BATCH) {
+        bsdf_eval_many(b, BATCH, from(in->wo, at), from(in->wi, at), f);
+        for (size_t i = 0; i < BATCH; i++)
+            sum += f[i].band[0];
+    }
+    return sum;
+}
+
+static const struct {
+    const char *name;
+    double (*one)(const struct bsdf *b, const struct inputs *in);
+    double (*many)(const struct bsdf *b, const struct inputs *in);
+} ops[OPS] = {
+    { "sample", sample_one, sample_many },
+    { "pdf", pdf_one, pdf_many },
+    { "eval", eval_one, eval_many },
+};
+
+struct calls {
+    double one, many; /* [ns] each */
+    bool same;        /* both sums, to the last bit */
+};
+
+static struct calls time_calls(int op, const struct bsdf *b,
+                               const struct inputs *in)
+{
+    double one[RUNS], many[RUNS];
+    struct calls c = { .same = true };
+    for (int run = 0; run < RUNS; run++) {
+        const double start = seconds();
+        const double a = ops[op].one(b, in);
+        const double middle = seconds();
+        c.same &= ops[op].many(b, in) == a;
+        one[run] = middle - start;
+        many[run] = seconds() - middle;
+    }
+    c.one = median(one, RUNS) / DIRECTIONS * 1e9;
+    c.many = median(many, RUNS) / DIRECTIONS * 1e9;
+    return c;
+}
+
+/* -- a chi-square ---------------------------------------------------------- */
+
+/* A survey and its chi-square, seen from 45 degrees [ms]. */
+static double time_chi2(const struct bsdf *b)
+{
+    double time[CHI2_RUNS];
+    for (int run = 0; run < CHI2_RUNS; run++) {
+        const double start = seconds();
+        struct subject s = look(b, dir_from_degrees(45, 0), &plan_default);
+        check_run(&check_chi2, &s);
+        subject_clear(&s);
+        time[run] = seconds() - start;
+    }
+    return median(time, CHI2_RUNS) * 1e3;
+}
+
+/* -- the masses of bins ---------------------------------------------------- */
+
+/* As in validate/subject.c. */
+static const double mass_tolerance = 1e-10;
+static const long mass_budget = 20000000;
+
+struct lobe {
+    const struct bsdf *bsdf;
+    struct vec3 wo;
+    long *evaluations;
+};
+
+enum { INTERVALS = 32, NODES = INTERVALS + 1, GAUSS = 16 };
+
+static void pdf_at(const void *context, size_t n, struct dirs w, double *pdf)
+{
+    const struct lobe *l = context;
+    double x[NODES * NODES], y[NODES * NODES], z[NODES * NODES];
+    for (size_t i = 0; i < n; i++)
+        x[i] = l->wo.x, y[i] = l->wo.y, z[i] = l->wo.z;
+    bsdf_pdf_many(l->bsdf, n, (struct dirs){ x, y, z }, w, pdf);
+    *l->evaluations += (long)n;
+}
+
+/* Nodes and weights on [0, 1]. */
+struct rule {
+    size_t nodes;
+    double x[NODES], weight[NODES];
+};
+
+static struct rule trapezoid(void)
+{
+    struct rule r = { .nodes = NODES };
+    for (int i = 0; i < NODES; i++) {
+        r.x[i] = (double)i / INTERVALS;
+        r.weight[i] = (i == 0 || i == INTERVALS ? 0.5 : 1.0) / INTERVALS;
+    }
+    return r;
+}
+
+static struct rule gauss(void)
+{
+    struct rule r = { .nodes = GAUSS };
+    gsl_integration_glfixed_table *t =
+        or_exit(gsl_integration_glfixed_table_alloc(GAUSS), "out of memory");
+    for (size_t i = 0; i < GAUSS; i++)
+        gsl_integration_glfixed_point(0, 1, i, &r.x[i], &r.weight[i], t);
+    gsl_integration_glfixed_table_free(t);
+    return r;
+}
+
+/* The product of a rule with itself, over theta and phi. */
+static double product(const struct rule *r, const struct lobe *l,
+                      struct patch p)
+{
+    double x[NODES * NODES], y[NODES * NODES], z[NODES * NODES];
+    double pdf[NODES * NODES], c[NODES], s[NODES], sum = 0;
+    const double dtheta = p.theta1 - p.theta0, dphi = p.phi1 - p.phi0;
+    const size_t n = r->nodes;
+    for (size_t k = 0; k < n; k++) {
+        c[k] = cos(p.phi0 + dphi * r->x[k]);
+        s[k] = sin(p.phi0 + dphi * r->x[k]);
+    }
+    for (size_t i = 0; i < n; i++) {
+        const double theta = p.theta0 + dtheta * r->x[i];
+        const double sin_theta = sin(theta), cos_theta = cos(theta);
+        for (size_t k = 0; k < n; k++) {
+            x[i * n + k] = sin_theta * c[k];
+            y[i * n + k] = sin_theta * s[k];
+            z[i * n + k] = cos_theta;
+        }
+    }
+    pdf_at(l, n * n, (struct dirs){ x, y, z }, pdf);
+    for (size_t i = 0; i < n; i++) {
+        double row = 0;
+        for (size_t k = 0; k < n; k++)
+            row += r->weight[k] * pdf[i * n + k];
+        sum += r->weight[i] * sin(p.theta0 + dtheta * r->x[i]) * row;
+    }
+    return sum * dtheta * dphi;
+}
+
+/* Until quarters change a part by less than 1e-15, at most to 1/64 of a bin. */
+static double refined(const struct rule *r, const struct lobe *l,
+                      struct patch p, double whole, int deeper)
+{
+    const double theta = (p.theta0 + p.theta1) / 2;
+    const double phi = (p.phi0 + p.phi1) / 2;
+    const struct patch quarter[] = { { p.theta0, theta, p.phi0, phi },
+                                     { p.theta0, theta, phi, p.phi1 },
+                                     { theta, p.theta1, p.phi0, phi },
+                                     { theta, p.theta1, phi, p.phi1 } };
+    double part[4], sum = 0;
+    for (int i = 0; i < 4; i++)
+        sum += part[i] = product(r, l, quarter[i]);
+    if (fabs(sum - whole) <= 1e-15 || deeper == 0)
+        return sum;
+    sum = 0;
+    for (int i = 0; i < 4; i++)
+        sum += refined(r, l, quarter[i], part[i], deeper - 1);
+    return sum;
+}
+
+struct masses {
+    size_t bins;
+    double total; /* of the reference */
+    struct method {
+        double ms;
+        long evaluations;
+        double error; /* the largest of any bin */
+    } plain, ours;
+    double bound; /* the largest error that ours states */
+};
+
+static double *reference_masses(const struct partition *p, struct lobe l,
+                                double *total)
+{
+    const struct rule rule = gauss();
+    double *mass =
+        or_exit(malloc(partition_bins(p) * sizeof *mass), "out of memory");
+    *total = 0;
+    for (size_t i = 0; i < partition_bins(p); i++) {
+        const struct patch bin = partition_patch(p, i);
+        mass[i] = refined(&rule, &l, bin, product(&rule, &l, bin), 6);
+        *total += mass[i];
+    }
+    return mass;
+}
+
+static struct method plain(const struct partition *p, struct lobe l,
+                           struct estimate *mass)
+{
+    struct method m = { 0 };
+    const struct rule rule = trapezoid();
+    const double start = seconds();
+    l.evaluations = &m.evaluations;
+    for (size_t i = 0; i < partition_bins(p); i++)
+        mass[i].value = product(&rule, &l, partition_patch(p, i));
+    m.ms = (seconds() - start) * 1e3;
+    return m;
+}
+
+static struct method ours(const struct partition *p, struct lobe l,
+                          struct estimate *mass)
+{
+    struct method m = { 0 };
+    const double start = seconds();
+    l.evaluations = &m.evaluations;
+    partition_integrate(p, pdf_at, &l, 1, mass_tolerance, mass_budget, mass);
+    m.ms = (seconds() - start) * 1e3;
+    return m;
+}
+
+/* The bins of a survey; seen from 30 degrees. */
+static struct masses time_masses(const struct bsdf *b)
+{
+    const struct plan plan = { .seed = 1,
+                               .samples = 1000,
+                               .significance = .01 };
+    const struct vec3 wo = dir_from_degrees(30, 0);
+    struct subject s = look(b, wo, &plan);
+    const struct partition *p = s.survey.partition;
+    const size_t bins = partition_bins(p);
+    struct estimate *mass =
+        or_exit(malloc(bins * sizeof *mass), "out of memory");
+    double time[2][MASS_RUNS];
+    struct masses m = { .bins = bins };
+    double *truth = reference_masses(
+        p, (struct lobe){ b, wo, &m.plain.evaluations }, &m.total);
+    for (int run = 0; run < MASS_RUNS; run++) {
+        double error[2] = { 0, 0 };
+        m.plain = plain(p, (struct lobe){ b, wo, NULL }, mass);
+        for (size_t i = 0; i < bins; i++)
+            error[0] = fmax(error[0], fabs(mass[i].value - truth[i]));
+        m.ours = ours(p, (struct lobe){ b, wo, NULL }, mass);
+        for (size_t i = 0; i < bins; i++) {
+            error[1] = fmax(error[1], fabs(mass[i].value - truth[i]));
+            m.bound = fmax(m.bound, mass[i].error);
+        }
+        time[0][run] = m.plain.ms, m.plain.error = error[0];
+        time[1][run] = m.ours.ms, m.ours.error = error[1];
+    }
+    m.plain.ms = median(time[0], MASS_RUNS);
+    m.ours.ms = median(time[1], MASS_RUNS);
+    free(truth);
+    free(mass);
+    subject_clear(&s);
+    return m;
+}
+
+/* -- the report ------------------------------------------------------------ */
+
+struct results {
+    struct calls calls[MODELS][OPS];
+    double chi2[MODELS]; /* [ms] */
+    struct masses masses[LOBES];
+};
+
+static void print_machine(void)
+{
+    char line[256], model[200] = "unknown", date[20] = "";
+    FILE *f = fopen("/proc/cpuinfo", "r");
+    while (f && fgets(line, sizeof line, f))
+        if (sscanf(line, "model name : %199[^\n]", model) == 1)
+            break;
+    if (f)
+        fclose(f);
+    const time_t now = time(NULL);
+    strftime(date, sizeof date, "%Y-%m-%d", localtime(&now));
+#ifdef __clang__
+    const char *compiler = __VERSION__;
+#else
+    const char *compiler = "gcc " __VERSION__;
+#endif
+    printf("machine   %s\ncompiler  %s\ndate      %s\n", model, compiler, date);
+    printf("method    one thread; medians; three bands; %d directions, wo "
+           "uniform over the upper\n          hemisphere and wi drawn by the "
+           "model; batches of %d\n",
+           DIRECTIONS, BATCH);
+}
+
+static void print_ratios(const struct results *r)
+{
+    printf("\nRATIOS\n%-42s", "one by one / batches");
+    for (int op = 0; op < OPS; op++)
+        printf("%12s", ops[op].name);
+    for (int m = 0; m < MODELS; m++) {
+        printf("\n  %-40s", models[m].name);
+        for (int op = 0; op < OPS; op++)
+            printf("%12.2f", r->calls[m][op].one / r->calls[m][op].many);
+    }
+    printf("\n%-42s%12s\n", "chi-square / drawing its samples", "time");
+    for (int m = 0; m < MODELS; m++)
+        printf("  %-40s%12.2f\n", models[m].name,
+               r->chi2[m] /
+                   (r->calls[m][0].many * 1e-6 * (double)plan_default.samples));
+    printf("%-42s%12s%12s%12s\n", "bin masses, trapezoids / graded Gauss",
+           "time", "evaluations", "error");
+    for (int k = 0; k < LOBES; k++) {
+        const struct masses *m = &r->masses[k];
+        printf("  %-40s%12.2f%12.2f%12.2g\n", lobes[k].name,
+               m->plain.ms / m->ours.ms,
+               (double)m->plain.evaluations / (double)m->ours.evaluations,
+               m->plain.error / m->ours.error);
+    }
+}
+
+static void print_times(const struct results *r)
+{
+    bool same = true;
+    printf("\nABSOLUTE\n%-42s", "[ns], one by one | in batches");
+    for (int op = 0; op < OPS; op++)
+        printf("%16s", ops[op].name);
+    for (int m = 0; m < MODELS; m++) {
+        printf("\n  %-40s", models[m].name);
+        for (int op = 0; op < OPS; op++) {
+            const struct calls *c = &r->calls[m][op];
+            printf("%7.1f |%7.1f", c->one, c->many);
+            same &= c->same;
+        }
+    }
+    printf("\n  %s\n", same ? "both give the same, to the last bit"
+                            : "THE TWO DIFFER, which they must not");
+    printf("chi-square of %.0g samples, at 45 degrees\n",
+           (double)plan_default.samples);
+    for (int m = 0; m < MODELS; m++)
+        printf("  %-40s%9.1f ms\n", models[m].name, r->chi2[m]);
+    printf("bin masses, alpha .005, at 30 degrees: %d x %d trapezoids a bin | "
+           "graded Gauss, %g a leaf\n",
+           INTERVALS, INTERVALS, mass_tolerance);
+    for (int k = 0; k < LOBES; k++) {
+        const struct masses *m = &r->masses[k];
+        printf("  %-20s%10s%14s%16s\n", lobes[k].name, "ms", "evaluations",
+               "largest error");
+        printf("    %-18s%10.2f%14ld%16.2g\n", "trapezoids", m->plain.ms,
+               m->plain.evaluations, m->plain.error);
+        printf("    %-18s%10.2f%14ld%16.2g, stated as at most %.2g\n",
+               "graded Gauss", m->ours.ms, m->ours.evaluations, m->ours.error,
+               m->bound);
+        printf("    %-18s%zu bins; the sum of masses less 1: %+.1g\n",
+               "reference", m->bins, m->total - 1);
+    }
+}
+
+int main(void)
+{
+    static struct inputs in;
+    static struct results r;
+    print_machine();
+    fflush(stdout);
+    for (int m = 0; m < MODELS; m++) {
+        struct bsdf *b = make(models[m].spec);
+        fill(&in, b);
+        for (int op = 0; op < OPS; op++)
+            r.calls[m][op] = time_calls(op, b, &in);
+        r.chi2[m] = time_chi2(b);
+        bsdf_free(b);
+    }
+    for (int k = 0; k < LOBES; k++) {
+        struct bsdf *b = make(lobes[k].spec);
+        r.masses[k] = time_masses(b);
+        bsdf_free(b);
+    }
+    print_ratios(&r);
+    print_times(&r);
+    return 0;
+}
