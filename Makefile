@@ -340,6 +340,7 @@ TIDY := bugprone-*,clang-analyzer-*,$\
         -bugprone-narrowing-conversions,$\
         -bugprone-sizeof-expression,$\
         -clang-analyzer-deadcode.DeadStores,$\
+        -clang-analyzer-security.FloatLoopCounter,$\
         -clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling,$\
         -clang-analyzer-security.insecureAPI.strcpy
 

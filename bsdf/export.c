@@ -16,12 +16,14 @@ static bool pairs(FILE *out, const struct export *e, bool of_k,
 {
     double low, high;
     ior_page_range(e->page, &low, &high);
-    const double from = step_nm * ceil(fmax(low, 360) / step_nm);
-    for (double nm = from; nm <= fmin(high, 830); nm += step_nm) {
+    const int first = (int)ceil(fmax(low, 360) / step_nm);
+    const int last = (int)floor(fmin(high, 830) / step_nm);
+    for (int i = first; i <= last; i++) {
+        const double nm = i * step_nm;
         double n, k;
         if (!ior_page_at(e->page, nm, &n, &k, err))
             return false;
-        fprintf(out, "%s%g%s%.6g", nm > from ? after : "", nm, between,
+        fprintf(out, "%s%g%s%.6g", i > first ? after : "", nm, between,
                 of_k ? k : n);
     }
     return true;

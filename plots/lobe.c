@@ -634,8 +634,9 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 {
     struct figure fig;
     struct lobe *l = calloc(1, sizeof *l);
-    bool ok = (l || err_set(err, "out of memory")) && lobe_init(l, r, err) &&
-              figure_open(&fig, r->output, err);
+    if (!l)
+        return err_set(err, "out of memory");
+    bool ok = lobe_init(l, r, err) && figure_open(&fig, r->output, err);
     if (ok) {
         table_write(fig.table, l);
         script_write(&fig, l);

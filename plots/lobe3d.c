@@ -55,7 +55,7 @@ struct surface {
 /* -- radii ----------------------------------------------------------------- */
 
 /* Of linear sRGB: the second row of the matrix of IEC 61966-2-1. */
-static const double luminance[] = { 0.2126, 0.7152, 0.0722 };
+static const double luminance[BANDS_MAX] = { 0.2126, 0.7152, 0.0722 };
 
 static double mean(const struct bands *bands, struct spectrum f)
 {
@@ -492,7 +492,8 @@ static double numbered_spoke(const struct surface *s, const struct scale *c)
     const double nearest = 30 * round((viewer + s->mirror_phi_deg - 15) / 30) +
                            15 - s->mirror_phi_deg;
     for (int i = 0; i < 5; i++) {
-        const double phi = nearest + (i % 2 ? 30 : -30) * ((i + 1) / 2);
+        const int turns = (i + 1) / 2;
+        const double phi = nearest + (i % 2 ? 30 : -30) * turns;
         bool free = true;
         for (int k = 1; k <= c->steps; k++)
             free = free && !covered(s, c, number_at(c, k, phi));
@@ -765,9 +766,10 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 {
     struct figure fig;
     struct surface *s = calloc(1, sizeof *s);
-    const bool ready = (s || err_set(err, "out of memory")) &&
-                       surface_init(s, r, err) &&
-                       figure_open(&fig, r->output, err);
+    if (!s)
+        return err_set(err, "out of memory");
+    const bool ready =
+        surface_init(s, r, err) && figure_open(&fig, r->output, err);
     bool ok = ready;
     if (ready) {
         table_write(fig.table, s);

@@ -186,7 +186,7 @@ static bool draw_of(const struct plot *plot, struct request *r,
 
 static bool draw(struct request *r, struct figure_made *made, struct err *err)
 {
-    char name[64];
+    static char name[64]; /* the request keeps it */
     const struct plot *plot = r->args > 0 ? kind(r->arg[0], err) : NULL;
     if (r->args == 0)
         return err_set(err, "expected a kind of plot and a SPEC, as in lobe "

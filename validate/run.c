@@ -62,24 +62,25 @@ bool run_checks(struct run *run, const struct plan *plan,
     *run = (struct run){ .plan = *plan };
     run->result = calloc(bsdfs * (wos ? wos : RUN_DIRECTIONS_MAX) + 1,
                          sizeof *run->result);
-    for (size_t i = 0; run->result && i < bsdfs; i++) {
+    bool ok = run->result;
+    for (size_t i = 0; ok && i < bsdfs; i++) {
         struct vec3 own[RUN_DIRECTIONS_MAX];
         const size_t count = wos ? wos : run_directions(bsdf[i], own);
-        for (size_t k = 0; run->result && k < count; k++) {
+        for (size_t k = 0; ok && k < count; k++) {
             struct result *r = &run->result[run->results++];
             r->bsdf = bsdf[i];
             r->wo = wos ? wo[k] : own[k];
             r->verdict = calloc(c, sizeof *r->verdict);
-            if (!r->verdict)
-                run_clear(run);
+            ok = r->verdict;
         }
     }
-    if (!run->result)
+    if (!ok) {
+        run_clear(run);
         return err_set(err, "out of memory");
+    }
 
     size_t done = 0;
     const size_t n = run->results;
-    bool ok = true;
     const int threads = plan->threads ? plan->threads : omp_get_max_threads();
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
     for (size_t i = 0; i < n; i++) {
