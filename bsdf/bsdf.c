@@ -124,26 +124,6 @@ static bool setting_read(const char **at, struct setting *s, const char *spec,
     return true;
 }
 
-/* Fails with the words to choose from and the near miss. */
-static bool unknown(const char *what, const char *meant,
-                    const char *const words[], struct err *err)
-{
-    char list[512] = "";
-    for (int i = 0; words[i]; i++) {
-        const size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "",
-                 words[i]);
-    }
-    const char *near = err_nearest(meant, words);
-    if (near)
-        return err_set(err,
-                       "%s \"%.60s\" is unknown: did you mean \"%s\"? "
-                       "There is: %s",
-                       what, meant, near, list);
-    return err_set(err, "%s \"%.60s\" is unknown; there is: %s", what, meant,
-                   list[0] ? list : "nothing to set");
-}
-
 static bool number_read(const struct bsdf_type *type,
                         const struct bsdf_param *p, const char *text,
                         size_t length, double *value, struct err *err)
@@ -200,7 +180,7 @@ static bool word_read(const struct bsdf_type *type, const struct bsdf_param *p,
             return true;
     char what[160];
     snprintf(what, sizeof what, "%s: %s", type->name, p->key);
-    return unknown(what, text, words, err);
+    return err_unknown(err, what, text, words);
 }
 
 /* The spec in a pair of parentheses. */
@@ -295,7 +275,7 @@ static bool settings_read(struct bsdf *b, const char *settings, struct err *err)
         while (i < n && strcmp(keys[i], s->key) != 0)
             i++;
         if (i == n)
-            ok = unknown(type->name, s->key, keys, err);
+            ok = err_unknown(err, type->name, s->key, keys);
         else if (given[i])
             ok = err_set(err, "%s: %s is given twice", type->name, s->key);
         else
@@ -361,7 +341,7 @@ struct bsdf *bsdf_new(const char *spec, const struct bands *bands,
             return make(bsdf_types[i], spec, spec + n + (spec[n] == ':'), bands,
                         err);
     }
-    unknown("model", name, names, err);
+    err_unknown(err, "model", name, names);
     return NULL;
 }
 

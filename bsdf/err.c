@@ -64,3 +64,22 @@ const char *err_nearest(const char *meant, const char *const words[])
     }
     return nearest;
 }
+
+bool err_unknown(struct err *err, const char *what, const char *meant,
+                 const char *const words[])
+{
+    char list[512] = "";
+    for (int i = 0; words[i]; i++) {
+        const size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "",
+                 words[i]);
+    }
+    const char *near = err_nearest(meant, words);
+    if (near)
+        return err_set(err,
+                       "%s \"%.60s\" is unknown: did you mean \"%s\"? "
+                       "There is: %s",
+                       what, meant, near, list);
+    return err_set(err, "%s \"%.60s\" is unknown; there is: %s", what, meant,
+                   list[0] ? list : "nothing to set");
+}

@@ -21,4 +21,9 @@ __attribute__((format(printf, 2, 3))) bool err_set(struct err *err,
  * third of its letters and at least one; NULL if none is. */
 const char *err_nearest(const char *meant, const char *const words[]);
 
+/** Always false: what was meant is none of the words, which one is near, and
+ * what there is. */
+bool err_unknown(struct err *err, const char *what, const char *meant,
+                 const char *const words[]);
+
 #endif

@@ -77,22 +77,6 @@ static const struct argp_option options[] = {
     { 0 },
 };
 
-/* Fails with the near miss. */
-static bool unknown(const char *what, const char *meant,
-                    const char *const names[], struct err *err)
-{
-    char list[256] = "";
-    for (int i = 0; names[i]; i++) {
-        const size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "",
-                 names[i]);
-    }
-    const char *near = err_nearest(meant, names);
-    return err_set(err, "%s \"%.60s\" is unknown%s%s%s; expected one of %s",
-                   what, meant, near ? ": did you mean \"" : "",
-                   near ? near : "", near ? "\"?" : "", list);
-}
-
 static error_t option(int key, char *arg, struct argp_state *state)
 {
     struct request *r = state->input;
@@ -111,7 +95,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
             if (strcmp(arg, export_names[r->as]) == 0)
                 break;
         if (!export_names[r->as])
-            ok = unknown("format", arg, export_names, &err);
+            ok = err_unknown(&err, "format", arg, export_names);
         break;
     case OPT_MATCH:
         r->match = arg;
@@ -615,7 +599,7 @@ int main(int argc, char **argv)
     if (i < COMMANDS) {
         ok = command[i].run(&r, &err);
     } else {
-        ok = unknown("command", r.arg[0], names, &err);
+        ok = err_unknown(&err, "command", r.arg[0], names);
     }
     if (!ok)
         fprintf(stderr, "bsdf-info: %s\n", err.text);

@@ -21,7 +21,6 @@ struct cuts {
 
 struct side {
     double phi0;
-    bool empty; /* of pilots */
     struct cuts theta;
     struct cuts phi[QUANTILES];      /* of the strips of each quantile */
     size_t first[INTERVALS_MAX + 1]; /* bin of each strip */
@@ -174,11 +173,10 @@ struct partition *partition_new(const struct vec3 *pilot, size_t n)
             if ((pilot[i].z < 0) == below)
                 polar[count++] = (struct polar){ polar_theta(pilot[i]),
                                                  polar_phi(pilot[i], s->phi0) };
-        s->empty = count == 0;
         s->coarse = p->coarse;
         side_cut(s, below * PI / 2, (below + 1) * PI / 2, polar, count, value,
                  &p->bins);
-        p->coarse += s->empty ? 1 : COARSE_THETA * COARSE_PHI;
+        p->coarse += count == 0 ? 1 : COARSE_THETA * COARSE_PHI;
     }
     if (!pilots_keep(p, pilot, n)) {
         partition_free(p);
