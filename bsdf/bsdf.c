@@ -397,7 +397,10 @@ const char *bsdf_spec(const struct bsdf *b)
 
 struct bsdf_claims bsdf_claims(const struct bsdf *b)
 {
-    return b->type->claims(b->state, &b->bands);
+    struct bsdf_claims claims = b->type->claims(b->state, &b->bands);
+    if (claims.epsilon == 0)
+        claims.epsilon = 0x1p-52;
+    return claims;
 }
 
 struct spectrum bsdf_eval(const struct bsdf *b, struct vec3 wo, struct vec3 wi)
@@ -448,6 +451,16 @@ void bsdf_sample_many(const struct bsdf *b, size_t n, struct dirs wo,
     }
     for (size_t i = 0; i < n; i++)
         sample[i] = b->type->sample(b->state, dirs_at(wo, i), dirs_at(u, i));
+}
+
+bool bsdf_has_trouble(const struct bsdf *b)
+{
+    return b->type->trouble;
+}
+
+bool bsdf_trouble(const struct bsdf *b, struct err *what)
+{
+    return b->type->trouble && b->type->trouble(b->state, what);
 }
 
 bool bsdf_has_facets(const struct bsdf *b)

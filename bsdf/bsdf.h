@@ -70,6 +70,8 @@ struct bsdf_claims {
     bool reciprocal; /* f(wo, wi) = f(wi, wo), in radiance divided by n^2 */
     bool two_sided;  /* it answers a wo below the surface as well */
     double eta;      /* index of the lower side over that of the upper */
+    double epsilon;  /* spacing of its floating-point numbers at 1: 2^-52 for
+                        double, which 0 stands for, 2^-23 for float */
 };
 
 struct bsdf_type {
@@ -93,6 +95,12 @@ struct bsdf_type {
     /* A microfacet model shows its facets: D(m) [1/sr] and Smith's G1(w). */
     double (*facet_d)(const void *state, struct vec3 m);
     double (*facet_g1)(const void *state, struct vec3 w);
+
+    /* For a model that is computed elsewhere, as by another program: tells and
+     * forgets the first thing that went wrong in calls of this thread since it
+     * was asked last; false if nothing did.  Values that could not be had are
+     * NaN. */
+    bool (*trouble)(const void *state, struct err *what);
 
     /* Many at once, bit for bit what the one-by-one calls give. */
     void (*eval_many)(const void *state, size_t n, struct dirs wo,
@@ -140,6 +148,11 @@ void bsdf_pdf_many(const struct bsdf *b, size_t n, struct dirs wo,
                    struct dirs wi, double *pdf);
 void bsdf_sample_many(const struct bsdf *b, size_t n, struct dirs wo,
                       struct dirs u, struct bsdf_sample *sample);
+
+/** Whether the model can be in trouble, and the first that it was in during
+ * calls of this thread since it was asked last. */
+bool bsdf_has_trouble(const struct bsdf *b);
+bool bsdf_trouble(const struct bsdf *b, struct err *what);
 
 /** Whether the model shows its facets, and what they are: D(m) [1/sr], and
  * the share G1(w) of the facets facing w that w sees. */

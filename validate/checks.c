@@ -4,7 +4,7 @@
 const struct check *const checks[] = {
     &check_finite, &check_support, &check_sample,  &check_pdf,
     &check_chi2,   &check_energy,  &check_furnace, &check_reciprocity,
-    &check_delta,  NULL,
+    &check_delta,  &check_answers, NULL,
 };
 
 int checks_count(void)

@@ -18,8 +18,9 @@ struct check {
     void (*run)(const struct subject *s, struct verdict *v);
 };
 
-extern const struct check check_chi2, check_delta, check_energy, check_finite,
-    check_furnace, check_pdf, check_reciprocity, check_sample, check_support;
+extern const struct check check_answers, check_chi2, check_delta, check_energy,
+    check_finite, check_furnace, check_pdf, check_reciprocity, check_sample,
+    check_support;
 
 /** All checks, in the order of reports; the last is NULL. */
 extern const struct check *const checks[];

@@ -12,6 +12,16 @@
 
 #include "bsdf/vec.h"
 
+/** One of the p-values that a check's own is made of. */
+struct verdict_part {
+    const char *name; /* "coarse", "total" ... */
+    double p;         /* conservative where the statistic is discrete */
+    double uniform;   /* randomised there, so that it is uniform for a sound
+                         model: for calibration alone */
+};
+
+enum { VERDICT_PARTS_MAX = 12 };
+
 struct verdict {
     const char *check; /* its name */
     bool applies;      /* false: nothing to check, and only note is set */
@@ -25,8 +35,14 @@ struct verdict {
                          where the check is not statistical */
 
     bool has_wi;
-    struct vec3 wo, wi; /* worst directions; wi only where has_wi */
-    char note[256];     /* the numbers behind it, one line */
+    struct vec3 wo, wi;  /* worst directions; wi only where has_wi */
+    char note[256];      /* the numbers behind it, one line */
+    char effect[128];    /* of one that passed: the smallest mistake that it
+                            would have found with 99 % power; or "" */
+    char diagnosis[256]; /* of one that failed: what is probably wrong; or "" */
+
+    int parts;
+    struct verdict_part part[VERDICT_PARTS_MAX];
 };
 
 /** Sets the note, or adds to it; what does not fit is cut off. */
