@@ -241,23 +241,26 @@ static void window(struct histogram *h, const struct vec3 *w, size_t n,
 
 /* -- integrals ------------------------------------------------------------- */
 
-static void on_cell(const void *context, const double x[QUADRATURE_ORDER],
-                    const double y[QUADRATURE_ORDER], double *value)
+static void on_cell(const void *context, size_t n,
+                    const double (*x)[QUADRATURE_ORDER],
+                    const double (*y)[QUADRATURE_ORDER], double *value)
 {
-    enum { ORDER = QUADRATURE_ORDER, NODES = ORDER * ORDER };
+    enum { ORDER = QUADRATURE_ORDER, NODES = QUADRATURE_NODES };
     const struct histogram *h = context;
-    double wx[NODES], wy[NODES], wz[NODES], ox[NODES], oy[NODES], oz[NODES];
-    for (int i = 0, at = 0; i < ORDER; i++)
-        for (int k = 0; k < ORDER; k++, at++) {
-            const struct vec3 w = direction(h, x[i], y[k], &value[NODES + at]);
-            wx[at] = w.x, wy[at] = w.y, wz[at] = w.z;
-            ox[at] = h->wo.x, oy[at] = h->wo.y, oz[at] = h->wo.z;
+    double *area = value + n * NODES;
+    for (size_t rule = 0; rule < n; rule++, value += NODES, area += NODES) {
+        double wx[NODES], wy[NODES], wz[NODES];
+        for (int i = 0, at = 0; i < ORDER; i++)
+            for (int k = 0; k < ORDER; k++, at++) {
+                const struct vec3 w =
+                    direction(h, x[rule][i], y[rule][k], &area[at]);
+                wx[at] = w.x, wy[at] = w.y, wz[at] = w.z;
+            }
+        subject_pdf(&h->subject, NODES, (struct dirs){ wx, wy, wz }, value);
+        for (int at = 0; at < NODES; at++) {
+            area[at] *= h->side * wz[at] > 0;
+            value[at] *= area[at];
         }
-    bsdf_pdf_many(h->bsdf, NODES, (struct dirs){ ox, oy, oz },
-                  (struct dirs){ wx, wy, wz }, value);
-    for (int at = 0; at < NODES; at++) {
-        value[NODES + at] *= h->side * wz[at] > 0;
-        value[at] *= value[NODES + at];
     }
 }
 
@@ -274,15 +277,33 @@ static size_t split(struct point *p, size_t n, bool of_y, double middle)
     return low;
 }
 
-/* Quarters a rectangle until each holds but a few pilots. */
-static void integrate(const struct histogram *h, struct rectangle r,
-                      struct point *p, size_t n, int depth, double tolerance,
-                      long *budget, struct estimate *out)
+/* The rectangles that a cell is integrated over. */
+struct parts {
+    struct quadrature_job *job;
+    size_t n, size;
+    struct estimate *out;
+};
+
+static bool parts_add(struct parts *p, struct rectangle r)
 {
-    if (n <= LEAF_PILOTS || depth == LEAF_DEPTH || *budget <= 0) {
-        quadrature(on_cell, h, 2, r, tolerance, budget, NULL, 0, out);
-        return;
+    if (p->n == p->size) {
+        const size_t size = 2 * p->size + 64;
+        struct quadrature_job *grown = realloc(p->job, size * sizeof *grown);
+        if (!grown)
+            return false;
+        p->job = grown;
+        p->size = size;
     }
+    p->job[p->n++] = (struct quadrature_job){ r, NULL, 0, p->out };
+    return true;
+}
+
+/* Quarters a rectangle until each holds but a few pilots. */
+static bool quarter(struct parts *parts, struct rectangle r, struct point *p,
+                    size_t n, int depth)
+{
+    if (n <= LEAF_PILOTS || depth == LEAF_DEPTH)
+        return parts_add(parts, r);
     const double x = (r.x0 + r.x1) / 2, y = (r.y0 + r.y1) / 2;
     const size_t left = split(p, n, false, x);
     for (int right = 0; right < 2; right++) {
@@ -290,11 +311,24 @@ static void integrate(const struct histogram *h, struct rectangle r,
         const size_t all = right ? n - left : left;
         const size_t low = split(q, all, true, y);
         const double x0 = right ? x : r.x0, x1 = right ? r.x1 : x;
-        integrate(h, (struct rectangle){ x0, x1, r.y0, y }, q, low, depth + 1,
-                  tolerance, budget, out);
-        integrate(h, (struct rectangle){ x0, x1, y, r.y1 }, q + low, all - low,
-                  depth + 1, tolerance, budget, out);
+        if (!quarter(parts, (struct rectangle){ x0, x1, r.y0, y }, q, low,
+                     depth + 1) ||
+            !quarter(parts, (struct rectangle){ x0, x1, y, r.y1 }, q + low,
+                     all - low, depth + 1))
+            return false;
     }
+    return true;
+}
+
+static void integrate(const struct histogram *h, struct rectangle r,
+                      struct point *p, size_t n, double tolerance, long *budget,
+                      struct estimate *out)
+{
+    struct parts parts = { .out = out };
+    if (!quarter(&parts, r, p, n, 0) ||
+        !quadrature(on_cell, h, 2, parts.job, parts.n, tolerance, budget))
+        out[0] = out[1] = (struct estimate){ NAN, NAN };
+    free(parts.job);
 }
 
 static int by_cell(const void *a, const void *b)
@@ -330,7 +364,7 @@ static void masses(struct histogram *h, const struct vec3 *w, struct point *p,
         while (end < n && p[end].cell == c)
             end++;
         struct estimate out[2] = { { 0, 0 }, { 0, 0 } };
-        integrate(h, rectangle_of(h, c), p + first, end - first, 0, tolerance,
+        integrate(h, rectangle_of(h, c), p + first, end - first, tolerance,
                   &budget, out);
         h->cell[c].mass = out[0];
         h->cell[c].solid = out[1];
@@ -712,7 +746,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
     const struct plan plan = { .seed = r->seed, .samples = r->samples };
     struct histogram h = {
         .bsdf = r->bsdf,
-        .subject = { .bsdf = r->bsdf, .wo = r->wo, .plan = &plan },
+        .subject = subject_plain(r->bsdf, r->wo, &plan),
         .wo = r->wo,
         .ahead = across > 0
                      ? (struct vec3){ -r->wo.x / across, -r->wo.y / across, 0 }

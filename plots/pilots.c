@@ -27,7 +27,7 @@ void pilots_draw(struct pilots *p, const struct bsdf *b, struct vec3 wo,
                  uint64_t seed)
 {
     const struct plan plan = { .seed = seed };
-    const struct subject s = { .bsdf = b, .wo = wo, .plan = &plan };
+    const struct subject s = subject_plain(b, wo, &plan);
     const struct rng rng = subject_rng(&s, STREAM_PILOT);
     p->n = 0;
     p->deltas = 0;

@@ -1,13 +1,14 @@
 /* check_chi2.c - samples fall where the pdf says
  *
- * Chi-square at two resolutions: the bins (some 400 that are full) and groups
- * of them (some 20), as many bins have no power against smooth errors and few
- * none against local ones.  Refused samples and delta directions are cells as
- * well, and nothing is rescaled.  Cells that expect fewer than 100 samples are
- * pooled, those that expect less than 1 apart; a pool that still expects fewer
- * is tested by its exact binomial tail, never dropped.
- * The integration error is read in favour of the model: a residual counts only
- * as far as it exceeds N times the error.
+ * Chi-square at four resolutions: the bins (some 400 that are full), strips in
+ * theta, slices in phi, and groups of both (some 20), as many bins have no
+ * power against smooth errors and few none against local ones; and the bin that
+ * is furthest off, by its exact binomial tail.  Refused samples and delta
+ * directions are cells as well, and nothing is rescaled.  Cells that expect
+ * fewer than 100 samples are pooled, those that expect less than 1 apart; a
+ * pool that still expects fewer is tested by its exact binomial tail, never
+ * dropped. The integration error is read in favour of the model: a residual
+ * counts only as far as it exceeds N times the error.
  *
  * K. Subr and J. Arvo, Statistical Hypothesis Testing for Assessing Monte
  * Carlo Estimators: Applications to Image Synthesis, Pacific Graphics 2007.
@@ -28,7 +29,8 @@ struct cell {
 
 struct outcome {
     double statistic, p;
-    double p_pool[2]; /* of cells that expect less than 1, and fewer than 100 */
+    struct cell pool[2]; /* of cells that expect less than 1, and fewer than
+                            100, where they expect fewer than 100 together */
     long degrees;
     size_t worst; /* the cell with the largest residual */
     double worst_sigma;
@@ -64,82 +66,150 @@ static void outcome_add(struct outcome *o, struct cell c, size_t at,
 static struct outcome test(const struct cell *cell, size_t n, uint64_t samples)
 {
     struct outcome o = { .degrees = -1, .worst = n };
-    struct cell pool[2] = { { { 0, 0 }, 0 } };
     for (size_t i = 0; i < n; i++) {
         /* A share that rounding made negative is as good as 0. */
         struct cell c = cell[i];
         c.share.value = fmax(c.share.value, 0);
         const double expected = c.share.value * (double)samples;
         if (expected < pool_below)
-            cell_add(&pool[expected >= pool_apart_below], c);
+            cell_add(&o.pool[expected >= pool_apart_below], c);
         else
             outcome_add(&o, c, i, (double)samples);
     }
-    for (int k = 0; k < 2; k++) {
-        o.p_pool[k] = 1;
-        if (pool[k].share.value * (double)samples < pool_below) {
-            o.p_pool[k] =
-                pvalue_binomial(pool[k].count, samples, pool[k].share);
-        } else {
-            outcome_add(&o, pool[k], n, (double)samples);
+    for (int k = 0; k < 2; k++)
+        if (o.pool[k].share.value * (double)samples >= pool_below) {
+            outcome_add(&o, o.pool[k], n, (double)samples);
+            o.pool[k] = (struct cell){ { 0, 0 }, 0 };
         }
-    }
     o.p = pvalue_chi_square(o.statistic, o.degrees);
     return o;
+}
+
+/* What is no bin: refused samples, and delta directions. */
+static size_t others(const struct survey *v, struct cell *cell)
+{
+    cell[0] = (struct cell){ survey_refusal(v), v->refused };
+    for (int k = 0; k < v->deltas; k++)
+        cell[k + 1] =
+            (struct cell){ { v->delta[k].pdf, 0 }, v->delta[k].count };
+    return 1 + (size_t)v->deltas;
+}
+
+static void chi_square_part(struct verdict *v, const char *name,
+                            const struct outcome *o, const struct survey *s,
+                            const char *effect)
+{
+    verdict_part(v, (struct verdict_part){
+                        .name = name,
+                        .p = o->p,
+                        .uniform = o->degrees > 0 ? o->p : NAN,
+                        .kind = o->degrees > 0 ? PART_CHI_SQUARE : PART_OTHER,
+                        .degrees = o->degrees,
+                        /* The sum of N m d^2 over cells of mass m. */
+                        .scale = (double)s->samples * s->total.value,
+                        .effect = effect,
+                    });
+}
+
+/* A pool of few; the number u makes the p-value uniform, for calibration. */
+static void pool_part(struct verdict *v, const char *name, struct cell c,
+                      const struct survey *s, double u, const char *effect)
+{
+    const double n = (double)s->samples;
+    const bool some = c.share.value * n > 0 || c.count > 0;
+    verdict_part(v, (struct verdict_part){
+                        .name = name,
+                        .p = pvalue_binomial(c.count, s->samples, c.share),
+                        .uniform = some ? pvalue_binomial_uniform(
+                                              c.count, s->samples,
+                                              fmin(c.share.value, 1), u)
+                                        : NAN,
+                        .kind = PART_POISSON,
+                        .mean = (c.share.value + c.share.error) * n,
+                        .scale = n,
+                        .effect = effect,
+                    });
+}
+
+/* The bin whose binomial tail is least likely, paid for by their number. */
+static void bin_part(struct verdict *v, const struct cell *cell, size_t n,
+                     size_t worst, const struct survey *s)
+{
+    double p = 1;
+    if (worst < n)
+        p = pvalue_binomial(cell[worst].count, s->samples, cell[worst].share);
+    verdict_part(v, (struct verdict_part){ .name = "worst bin",
+                                           .p = fmin(p * (double)n, 1),
+                                           .uniform = NAN });
+}
+
+/* The resolution of a grouping of the fine cells. */
+static struct outcome grouped(const struct survey *s, const struct cell *fine,
+                              enum partition_grouping by, struct cell *cell)
+{
+    const size_t bins = partition_bins(s->partition);
+    const size_t n = partition_groups(s->partition, by);
+    for (size_t i = 0; i < n; i++)
+        cell[i] = (struct cell){ { 0, 0 }, 0 };
+    for (size_t i = 0; i < bins; i++)
+        cell_add(&cell[partition_group(s->partition, by, i)], fine[i]);
+    return test(cell, n + others(s, cell + n), s->samples);
 }
 
 static void run(const struct subject *s, struct verdict *v)
 {
     const struct survey *survey = &s->survey;
     const size_t bins = partition_bins(survey->partition);
-    const size_t groups = partition_coarse_bins(survey->partition);
-    const size_t others = 1 + (size_t)survey->deltas;
-    if (!(bsdf_claims(s->bsdf).lobes & ~(unsigned)BSDF_DELTA)) {
+    if (!(s->claims.lobes & ~(unsigned)BSDF_DELTA)) {
         v->applies = false;
         verdict_note(v, "only delta lobes");
         return;
     }
-    struct cell *fine = calloc(bins + others, sizeof *fine);
-    struct cell *coarse = calloc(groups + others, sizeof *coarse);
+    /* No grouping has more cells than there are bins. */
+    struct cell *fine = calloc(bins + 1 + DELTAS_MAX, sizeof *fine);
+    struct cell *group = calloc(bins + 1 + DELTAS_MAX, sizeof *group);
     v->unit = "sigma";
-    if (!fine || !coarse) {
+    if (!fine || !group) {
         v->value = NAN;
         verdict_note(v, "out of memory");
         goto done;
     }
-    for (size_t i = 0; i < bins; i++) {
+    for (size_t i = 0; i < bins; i++)
         fine[i] = (struct cell){ survey->mass[i], survey->count[i] };
-        cell_add(&coarse[partition_coarse(survey->partition, i)], fine[i]);
-    }
-    for (int k = 0; k < survey->deltas; k++) {
-        const struct delta *d = &survey->delta[k];
-        fine[bins + 1 + (size_t)k] = coarse[groups + 1 + (size_t)k] =
-            (struct cell){ { d->pdf, 0 }, d->count };
-    }
-    fine[bins] = coarse[groups] =
-        (struct cell){ survey_refusal(survey), survey->refused };
+    const size_t cells = bins + others(survey, fine + bins);
+    const struct outcome f = test(fine, cells, survey->samples);
+    const struct outcome theta = grouped(survey, fine, PARTITION_THETA, group);
+    const struct outcome phi = grouped(survey, fine, PARTITION_PHI, group);
+    const struct outcome c = grouped(survey, fine, PARTITION_COARSE, group);
 
-    const struct outcome f = test(fine, bins + others, survey->samples);
-    const struct outcome c = test(coarse, groups + others, survey->samples);
+    const struct vec3 u = rng_uniform(subject_rng(s, STREAM_RANDOMISE), 0);
+    chi_square_part(v, "fine", &f, survey, NULL);
+    chi_square_part(v, "theta", &theta, survey, NULL);
+    chi_square_part(v, "phi", &phi, survey, NULL);
+    chi_square_part(v, "coarse", &c, survey, "the pdf, from part to part,");
+    pool_part(v, "empty", f.pool[0], survey, u.x,
+              "where nearly none should be, samples");
     /* The groups' pools are the fine ones once more. */
-    const double p[] = { f.p, f.p_pool[0], f.p_pool[1], c.p };
-    v->p = pvalue_best(p, 4);
+    pool_part(v, "sparse", f.pool[1], survey, u.y, NULL);
+    bin_part(v, fine, cells, f.worst, survey);
+    verdict_combine(v);
     if (survey->stray > 0 || isnan(survey->total.value))
         v->p = pvalue_impossible;
     if (f.worst < bins) {
         v->has_wi = true;
         v->wi = patch_centre(partition_patch(survey->partition, f.worst));
     }
-    verdict_note(
-        v,
-        "fine %.1f on %ld, coarse %.1f on %ld degrees of freedom, nearly "
-        "empty bins p %.2g, worst bin %+.1f sigma%s",
-        f.statistic, f.degrees, c.statistic, c.degrees,
-        fmin(f.p_pool[0], f.p_pool[1]), f.worst_sigma,
-        survey->stray > 0 ? ", samples that are no directions" : "");
+    verdict_note(v,
+                 "fine %.1f on %ld, theta %.1f on %ld, phi %.1f on %ld, coarse "
+                 "%.1f on %ld degrees of freedom, nearly empty bins p %.2g, "
+                 "worst bin %+.1f sigma%s",
+                 f.statistic, f.degrees, theta.statistic, theta.degrees,
+                 phi.statistic, phi.degrees, c.statistic, c.degrees,
+                 fmin(v->part[4].p, v->part[5].p), f.worst_sigma,
+                 survey->stray > 0 ? ", samples that are no directions" : "");
 done:
     free(fine);
-    free(coarse);
+    free(group);
 }
 
 const struct check check_chi2 = {

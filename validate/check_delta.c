@@ -16,7 +16,7 @@
 static bool expected(const struct subject *s, bool refracted, struct vec3 *wi)
 {
     const struct vec3 wo = s->wo;
-    const double eta = bsdf_claims(s->bsdf).eta;
+    const double eta = s->claims.eta;
     const double ratio = wo.z > 0 ? 1 / eta : eta;
     /* 1 - (ratio sin_o)^2, without its cancellation at grazing */
     const double cos2 = ratio * ratio * wo.z * wo.z + (1 - ratio) * (1 + ratio);
@@ -44,7 +44,7 @@ static bool fault(struct verdict *v, const struct delta *d, const char *what,
 }
 
 static bool delta_judge(const struct subject *s, const struct delta *d,
-                        unsigned lobes, double *p, struct verdict *v)
+                        unsigned lobes, struct verdict *v)
 {
     const bool refracted = d->wi.z * s->wo.z < 0;
     struct vec3 right;
@@ -64,28 +64,42 @@ static bool delta_judge(const struct subject *s, const struct delta *d,
         return fault(v, d, "samples of one direction differ by", d->spread);
     if (!(d->pdf > 0 && d->pdf <= 1))
         return fault(v, d, "the probability is outside (0, 1]", d->pdf);
-    *p = pvalue_binomial(d->count, s->survey.samples,
-                         (struct estimate){ d->pdf, 0 });
+    const uint64_t n = s->survey.samples;
+    const bool rare = d->pdf < 1;
+    const double spread = sqrt(d->pdf * (1 - d->pdf) / (double)n);
+    const double u =
+        rng_uniform(subject_rng(s, STREAM_RANDOMISE), 2 + (uint64_t)v->parts).x;
+    verdict_part(
+        v,
+        (struct verdict_part){
+            .name = refracted ? "refracted" : "reflected",
+            .p = pvalue_binomial(d->count, n, (struct estimate){ d->pdf, 0 }),
+            .uniform =
+                rare ? pvalue_binomial_uniform(d->count, n, d->pdf, u) : NAN,
+            .kind = rare ? PART_NORMAL : PART_OTHER,
+            .scale = d->pdf / spread,
+            .effect = refracted ? "the probability of transmission"
+                                : "the probability of reflection",
+        });
     return true;
 }
 
 static void run(const struct subject *s, struct verdict *v)
 {
     const struct survey *survey = &s->survey;
-    const unsigned lobes = bsdf_claims(s->bsdf).lobes;
+    const unsigned lobes = s->claims.lobes;
     if (!(lobes & BSDF_DELTA) && survey->deltas == 0) {
         v->applies = false;
         verdict_note(v, "no delta lobe");
         return;
     }
-    double p[DELTAS_MAX] = { 1 };
     v->unit = "sigma";
     if (survey->delta_others > 0) {
         fault(v, NULL, "more delta directions than a lobe each",
               (double)survey->delta_others);
         return;
     }
-    if (s->wo.z < 0 && !bsdf_claims(s->bsdf).two_sided && survey->deltas == 0) {
+    if (s->wo.z < 0 && !s->claims.two_sided && survey->deltas == 0) {
         v->applies = false;
         verdict_note(v, "one-sided");
         return;
@@ -96,9 +110,9 @@ static void run(const struct subject *s, struct verdict *v)
         return;
     }
     for (int k = 0; k < survey->deltas; k++)
-        if (!delta_judge(s, &survey->delta[k], lobes, &p[k], v))
+        if (!delta_judge(s, &survey->delta[k], lobes, v))
             return;
-    v->p = pvalue_best(p, survey->deltas); /* 1 beyond the critical angle */
+    verdict_combine(v); /* 1 beyond the critical angle */
     verdict_note(
         v, "%d direction%s, the first %llu times", survey->deltas,
         survey->deltas == 1 ? "" : "s",

@@ -44,6 +44,7 @@ static void run(const struct subject *s, struct verdict *v)
     v->value = worse ? off_area : off_seen;
     v->error = worse ? area.error : seen.error * scale;
     v->passed = v->error <= v->limit;
+    verdict_found(v, "a D or G1 wrong by %.1g %%", 100 * v->limit);
     verdict_note(v, "int D cos = %.9f, G1 int D max(0, wo.m) / cos_o = %.9f%s",
                  area.value, seen.value * scale,
                  v->passed ? "" : ", undecided: error above 1e-6");

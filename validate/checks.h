@@ -19,14 +19,18 @@ struct check {
 };
 
 extern const struct check check_answers, check_chi2, check_delta, check_energy,
-    check_finite, check_furnace, check_pdf, check_reciprocity, check_sample,
-    check_support;
+    check_finite, check_furnace, check_jacobian, check_lobes, check_pdf,
+    check_reciprocity, check_sample, check_support, check_weights;
 
 /** All checks, in the order of reports; the last is NULL. */
 extern const struct check *const checks[];
 int checks_count(void);
 
-/** Runs one check on a subject.  A verdict with a p is not decided yet. */
-struct verdict check_run(const struct check *check, const struct subject *s);
+/** The index of the check of a name, or -1. */
+int checks_find(const char *name);
+
+/** Runs the check of an index on a subject.  A verdict with a p is not decided
+ * yet; one that the plan skips does not apply. */
+struct verdict check_run(int index, const struct subject *s);
 
 #endif

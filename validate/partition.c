@@ -15,21 +15,22 @@ enum { COARSE_THETA = 5, COARSE_PHI = 4 };
  * or nearest to. */
 struct cuts {
     size_t count;
-    double edge[INTERVALS_MAX + 1];
+    double edge[INTERVALS_MAX + 1]; /* [rad] */
+    double key[INTERVALS_MAX + 1];  /* what grows with the angle, see below */
     unsigned char quantile[INTERVALS_MAX];
 };
 
 struct side {
-    double phi0;
+    double phi0, cos0, sin0;
     struct cuts theta;
     struct cuts phi[QUANTILES];      /* of the strips of each quantile */
     size_t first[INTERVALS_MAX + 1]; /* bin of each strip */
-    size_t coarse;                   /* the first group */
+    bool empty;                      /* without pilots */
 };
 
 struct partition {
     struct side side[2]; /* above and below */
-    size_t bins, coarse;
+    size_t bins;
     struct vec3 *pilot; /* by bins */
     size_t *first;      /* pilot of each bin; one more at the end */
 };
@@ -62,14 +63,48 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The interval that holds x; the ends belong to the outer ones.  Without a
- * branch on x, which no processor could predict. */
-static size_t interval(const struct cuts *c, double x)
+/* A direction is found by what grows with its angles and costs no arc
+ * tangent: tan^2(theta), with a minus below the horizon, and the way round a
+ * square instead of a circle.  Both keep all digits, at the normal and at the
+ * horizon. */
+static double theta_key(struct vec3 w)
+{
+    const double tan2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
+    return w.z < 0 ? -tan2 : tan2;
+}
+
+static double square(double x, double y)
+{
+    const double d = fabs(x) + fabs(y) + 0x1p-1022, s = y / d;
+    return x >= 0 ? s : copysign(2, y) - s;
+}
+
+static double phi_key(const struct side *s, struct vec3 w)
+{
+    return square(w.x * s->cos0 + w.y * s->sin0, w.y * s->cos0 - w.x * s->sin0);
+}
+
+static void keys_make(struct side *s)
+{
+    for (size_t i = 0; i <= s->theta.count; i++) {
+        const double t = s->theta.edge[i];
+        s->theta.key[i] = theta_key((struct vec3){ .x = sin(t), .z = cos(t) });
+    }
+    for (int k = 0; k < QUANTILES; k++)
+        for (size_t i = 0; i <= s->phi[k].count; i++) {
+            const double phi = s->phi[k].edge[i];
+            s->phi[k].key[i] = square(cos(phi), sin(phi));
+        }
+}
+
+/* The interval that holds a key; the ends belong to the outer ones.  Without a
+ * branch on the key, which no processor could predict. */
+static size_t interval(const struct cuts *c, double key)
 {
     size_t low = 0;
     for (size_t n = c->count; n > 1;) {
         const size_t half = n / 2;
-        low = x < c->edge[low + half] ? low : low + half;
+        low = key < c->key[low + half] ? low : low + half;
         n -= half;
     }
     return low;
@@ -119,10 +154,20 @@ static void side_cut(struct side *s, double from, double to,
         qsort(value + first, last - first, sizeof *value, ascending);
         cut(&s->phi[k], value + first, last - first, -PI, PI, PI / 4);
     }
+    keys_make(s);
     for (size_t i = 0; i < s->theta.count; i++) {
         s->first[i] = *bins;
         *bins += s->phi[s->theta.quantile[i]].count;
     }
+}
+
+static size_t find(const struct partition *p, struct vec3 w)
+{
+    if (!(vec3_dot(w, w) > 0.5)) /* not a number fails too */
+        return p->bins;
+    const struct side *s = &p->side[w.z < 0];
+    const size_t i = interval(&s->theta, theta_key(w));
+    return s->first[i] + interval(&s->phi[s->theta.quantile[i]], phi_key(s, w));
 }
 
 /* Keeps the pilots in the order of their bins. */
@@ -133,7 +178,7 @@ static bool pilots_keep(struct partition *p, const struct vec3 *pilot, size_t n)
     size_t *bin = malloc((n + 1) * sizeof *bin);
     const bool ok = p->pilot && p->first && bin;
     for (size_t i = 0; ok && i < n; i++) {
-        bin[i] = partition_bin(p, pilot[i]);
+        bin[i] = find(p, pilot[i]);
         p->first[bin[i] + 1]++;
     }
     for (size_t k = 0; ok && k <= p->bins; k++)
@@ -169,14 +214,15 @@ struct partition *partition_new(const struct vec3 *pilot, size_t n)
                 y += pilot[i].y;
             }
         s->phi0 = atan2(y, x);
+        s->cos0 = cos(s->phi0);
+        s->sin0 = sin(s->phi0);
         for (size_t i = 0; i < n; i++)
             if ((pilot[i].z < 0) == below)
                 polar[count++] = (struct polar){ polar_theta(pilot[i]),
                                                  polar_phi(pilot[i], s->phi0) };
-        s->coarse = p->coarse;
+        s->empty = count == 0;
         side_cut(s, below * PI / 2, (below + 1) * PI / 2, polar, count, value,
                  &p->bins);
-        p->coarse += count == 0 ? 1 : COARSE_THETA * COARSE_PHI;
     }
     if (!pilots_keep(p, pilot, n)) {
         partition_free(p);
@@ -202,19 +248,11 @@ size_t partition_bins(const struct partition *p)
     return p->bins;
 }
 
-size_t partition_coarse_bins(const struct partition *p)
+void partition_find(const struct partition *p, size_t n, struct dirs w,
+                    uint32_t *bin)
 {
-    return p->coarse;
-}
-
-size_t partition_bin(const struct partition *p, struct vec3 w)
-{
-    if (!(vec3_dot(w, w) > 0.5)) /* not a number fails too */
-        return p->bins;
-    const struct side *s = &p->side[w.z < 0];
-    const size_t i = interval(&s->theta, polar_theta(w));
-    return s->first[i] +
-           interval(&s->phi[s->theta.quantile[i]], polar_phi(w, s->phi0));
+    for (size_t i = 0; i < n; i++)
+        bin[i] = (uint32_t)find(p, dirs_at(w, i));
 }
 
 /* Where a bin is: its side, strip and slice. */
@@ -234,13 +272,30 @@ static struct place place_of(const struct partition *p, size_t bin)
                            bin - s->first[i] };
 }
 
-size_t partition_coarse(const struct partition *p, size_t bin)
+/* Rows and columns of a grouping. */
+static const size_t rows[] = { QUANTILES, 1, COARSE_THETA };
+static const size_t columns[] = { 1, QUANTILES, COARSE_PHI };
+
+size_t partition_groups(const struct partition *p, enum partition_grouping by)
+{
+    size_t n = 0;
+    for (int below = 0; below < 2; below++)
+        n += p->side[below].empty ? 1 : rows[by] * columns[by];
+    return n;
+}
+
+size_t partition_group(const struct partition *p, enum partition_grouping by,
+                       size_t bin)
 {
     const struct place at = place_of(p, bin);
     const size_t row = at.side->theta.quantile[at.strip];
     const size_t column = at.phi->quantile[at.slice];
-    return at.side->coarse + row * COARSE_THETA / QUANTILES * COARSE_PHI +
-           column * COARSE_PHI / QUANTILES;
+    const size_t before = at.side == &p->side[0] ? 0
+                          : p->side[0].empty     ? 1
+                                                 : rows[by] * columns[by];
+    return at.side->empty ? before
+                          : before + row * rows[by] / QUANTILES * columns[by] +
+                                column * columns[by] / QUANTILES;
 }
 
 struct patch partition_patch(const struct partition *p, size_t bin)
@@ -252,24 +307,24 @@ struct patch partition_patch(const struct partition *p, size_t bin)
                            at.side->phi0 + phi[1] };
 }
 
-void partition_integrate_bin(const struct partition *p, size_t bin,
-                             sphere_fn *f, const void *context, int parts,
-                             double tolerance, long *budget,
-                             const struct vec3 *hint, size_t n,
-                             struct estimate *out)
-{
-    for (int part = 0; part < parts; part++)
-        out[part] = (struct estimate){ 0, 0 };
-    patch_integrate(f, context, parts, partition_patch(p, bin), tolerance,
-                    budget, hint, n, out);
-}
-
-void partition_integrate(const struct partition *p, sphere_fn *f,
+bool partition_integrate(const struct partition *p, sphere_fn *f,
                          const void *context, int parts, double tolerance,
                          long budget, struct estimate *out)
 {
-    for (size_t bin = 0; bin < p->bins; bin++, out += parts)
-        partition_integrate_bin(p, bin, f, context, parts, tolerance, &budget,
-                                p->pilot + p->first[bin],
-                                p->first[bin + 1] - p->first[bin], out);
+    struct patch_job *job = malloc((p->bins + 1) * sizeof *job);
+    bool ok = job;
+    for (size_t bin = 0; ok && bin < p->bins; bin++) {
+        job[bin] = (struct patch_job){
+            .patch = partition_patch(p, bin),
+            .hint = p->pilot + p->first[bin],
+            .n = p->first[bin + 1] - p->first[bin],
+            .out = out + bin * (size_t)parts,
+        };
+        for (int part = 0; part < parts; part++)
+            job[bin].out[part] = (struct estimate){ 0, 0 };
+    }
+    ok = ok &&
+         patches_integrate(f, context, parts, job, p->bins, tolerance, &budget);
+    free(job);
+    return ok;
 }

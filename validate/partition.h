@@ -10,6 +10,8 @@
 #ifndef VALIDATE_PARTITION_H
 #define VALIDATE_PARTITION_H
 
+#include <stdint.h>
+
 #include "validate/sphere.h"
 
 struct partition;
@@ -21,27 +23,26 @@ void partition_free(struct partition *p); /* NULL is fine */
 
 size_t partition_bins(const struct partition *p);
 
-/** The bin that holds w, or the number of bins where w is not a direction. */
-size_t partition_bin(const struct partition *p, struct vec3 w);
+/** The bin that holds each of n directions, or the number of bins where it is
+ * not a direction. */
+void partition_find(const struct partition *p, size_t n, struct dirs w,
+                    uint32_t *bin);
 
 /** The angles that a bin spans. */
 struct patch partition_patch(const struct partition *p, size_t bin);
 
-/** A coarser grouping of the bins, five by four a hemisphere with pilots. */
-size_t partition_coarse_bins(const struct partition *p);
-size_t partition_coarse(const struct partition *p, size_t bin);
+/** Groupings of the bins: by strips and by slices, twenty a hemisphere with
+ * pilots, and coarse, five by four. */
+enum partition_grouping { PARTITION_THETA, PARTITION_PHI, PARTITION_COARSE };
+size_t partition_groups(const struct partition *p, enum partition_grouping by);
+size_t partition_group(const struct partition *p, enum partition_grouping by,
+                       size_t bin);
 
 /** Integrates over each bin: out[bin * parts + part].  See quadrature; the
- * pilots are the hints.  The budget is for all bins together. */
-void partition_integrate(const struct partition *p, sphere_fn *f,
+ * pilots are the hints.  The budget is for all bins together.  False when out
+ * of memory. */
+bool partition_integrate(const struct partition *p, sphere_fn *f,
                          const void *context, int parts, double tolerance,
                          long budget, struct estimate *out);
-
-/** One bin again, with n other directions in it as hints. */
-void partition_integrate_bin(const struct partition *p, size_t bin,
-                             sphere_fn *f, const void *context, int parts,
-                             double tolerance, long *budget,
-                             const struct vec3 *hint, size_t n,
-                             struct estimate *out);
 
 #endif

@@ -10,8 +10,11 @@ struct plan {
     double significance; /* of the whole run: the chance that anything sound
                             is called unsound, in (0, 1) */
     int threads;         /* 0: as many as there are */
+    int escalations; /* how often a doubtful result may ask for four times the
+                        samples, see run.h */
+    uint64_t skip;   /* bit i: without the i-th check */
 };
 
-extern const struct plan plan_default; /* 1, 10^6, 1e-6, 0 */
+extern const struct plan plan_default; /* 1, 10^6, 1e-6, 0, 2, 0 */
 
 #endif

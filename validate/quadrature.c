@@ -2,9 +2,16 @@
 #include "validate/quadrature.h"
 
 #include <math.h>
-#include <stdbool.h>
+#include <stdlib.h>
 
-enum { ORDER = QUADRATURE_ORDER, DEPTH_MAX = 60 };
+enum {
+    ORDER = QUADRATURE_ORDER,
+    NODES = QUADRATURE_NODES,
+    PARTS = QUADRATURE_PARTS_MAX,
+    DEPTH_MAX = 60,
+    RULES = QUADRATURE_RULES,
+    LEAVES = RULES / 4 /* refined at once: two halves along each axis */
+};
 
 /* Nodes and weights on [-1, 1], the roots of P6.  M. Abramowitz and I. Stegun,
  * Handbook of Mathematical Functions, 1964, table 25.4. */
@@ -17,73 +24,76 @@ static const double node_weight[ORDER] = {
     0.467913934572691, 0.360761573048139, 0.171324492379170,
 };
 
-struct job {
+/* What a rule found on a rectangle. */
+struct found {
+    double value[PARTS];
+    double height; /* the largest |f| at a node */
+};
+
+struct leaf {
+    struct rectangle r;
+    struct found whole;
+    struct quadrature_hint *hint;
+    size_t n;
+    struct estimate *out;
+    int depth;
+};
+
+struct room {
+    double x[RULES][ORDER], y[RULES][ORDER], value[PARTS * RULES * NODES];
+};
+
+struct work {
     quadrature_fn *f;
     const void *context;
     int parts;
     double tolerance;
     long *budget;
-    struct estimate *out;
+    struct room *room;
+    struct leaf *leaf; /* a stack of those that are not accepted yet */
+    size_t leaves, size;
 };
 
-/* The rule on one rectangle, a value a part; the largest |f| at a node. */
-static double rule(struct job *j, struct rectangle r, double *value)
+/* The rule on n rectangles, at most RULES. */
+static void rules(struct work *w, const struct rectangle *r, size_t n,
+                  struct found *found)
 {
-    double x[ORDER], y[ORDER], f[QUADRATURE_PARTS_MAX * ORDER * ORDER];
-    const double dx = (r.x1 - r.x0) / 2, dy = (r.y1 - r.y0) / 2;
-    for (int i = 0; i < ORDER; i++) {
-        x[i] = r.x0 + dx * (1 + node[i]);
-        y[i] = r.y0 + dy * (1 + node[i]);
-    }
-    j->f(j->context, x, y, f);
-    *j->budget -= ORDER * ORDER;
-    double most = 0;
-    for (int i = 0; i < j->parts * ORDER * ORDER; i++)
-        most = fmax(most, fabs(f[i]));
-    for (int part = 0, at = 0; part < j->parts; part++) {
-        value[part] = 0;
+    struct room *a = w->room;
+    for (size_t at = 0; at < n; at++) {
+        const double dx = (r[at].x1 - r[at].x0) / 2;
+        const double dy = (r[at].y1 - r[at].y0) / 2;
         for (int i = 0; i < ORDER; i++) {
-            double row = 0;
-            for (int k = 0; k < ORDER; k++, at++)
-                row += node_weight[k] * f[at];
-            value[part] += dx * dy * node_weight[i] * row;
+            a->x[at][i] = r[at].x0 + dx * (1 + node[i]);
+            a->y[at][i] = r[at].y0 + dy * (1 + node[i]);
         }
     }
-    return most;
-}
-
-/* Both halves of a rectangle along x or along y, and how far the sum is off the
- * whole. */
-struct halves {
-    struct rectangle r[2];
-    double value[2][QUADRATURE_PARTS_MAX], off[QUADRATURE_PARTS_MAX];
-    double most;   /* off, in tolerances */
-    double height; /* the largest |f| at a node */
-};
-
-static void halve(struct job *j, struct rectangle r, bool along_x,
-                  const double *whole, struct halves *h)
-{
-    h->r[0] = h->r[1] = r;
-    if (along_x)
-        h->r[0].x1 = h->r[1].x0 = (r.x0 + r.x1) / 2;
-    else
-        h->r[0].y1 = h->r[1].y0 = (r.y0 + r.y1) / 2;
-    h->height =
-        fmax(rule(j, h->r[0], h->value[0]), rule(j, h->r[1], h->value[1]));
-    h->most = 0;
-    for (int part = 0; part < j->parts; part++) {
-        h->off[part] = h->value[0][part] + h->value[1][part] - whole[part];
-        if (!(fabs(h->off[part]) <= h->most * j->tolerance)) /* or NaN */
-            h->most = fabs(h->off[part]) / j->tolerance;
+    w->f(w->context, n, (const double(*)[ORDER])a->x,
+         (const double(*)[ORDER])a->y, a->value);
+    *w->budget -= (long)(n * NODES);
+    for (size_t at = 0; at < n; at++) {
+        const double area = (r[at].x1 - r[at].x0) * (r[at].y1 - r[at].y0) / 4;
+        found[at].height = 0;
+        for (int part = 0; part < w->parts; part++) {
+            const double *f = a->value + ((size_t)part * n + at) * NODES;
+            double sum = 0;
+            for (int i = 0; i < ORDER; i++) {
+                double row = 0;
+                for (int k = 0; k < ORDER; k++, f++) {
+                    row += node_weight[k] * *f;
+                    found[at].height = fmax(found[at].height, fabs(*f));
+                }
+                sum += node_weight[i] * row;
+            }
+            found[at].value[part] = area * sum;
+        }
     }
 }
 
 /* Whether the nodes have met what the hints say is there. */
-static bool met(const struct quadrature_hint *hint, size_t n, double height)
+static bool met(const struct leaf *l, double height)
 {
-    for (size_t i = 0; i < n; i++)
-        if (hint[i].height > 2 * height)
+    for (size_t i = 0; i < l->n; i++)
+        if (l->hint[i].height > 2 * height)
             return false;
     return true;
 }
@@ -102,51 +112,144 @@ static size_t hints_in(struct quadrature_hint *hint, size_t n,
     return in;
 }
 
-static void refine(struct job *j, struct rectangle r, const double *whole,
-                   struct quadrature_hint *hint, size_t n, int depth)
+static void halves(struct rectangle r, struct rectangle half[4])
 {
-    struct halves x, y;
-    halve(j, r, true, whole, &x);
-    halve(j, r, false, whole, &y);
-    const bool seen = met(hint, n, fmax(x.height, y.height));
-    /* A NaN is not looked into. */
-    if ((!(x.most + y.most > 1) && seen) || depth == DEPTH_MAX ||
-        *j->budget <= 0) {
-        for (int part = 0; part < j->parts; part++) {
-            j->out[part].value += whole[part] + x.off[part] + y.off[part];
-            j->out[part].error += fabs(x.off[part]) + fabs(y.off[part]);
-        }
-        return;
-    }
-    /* Where nothing tells the axes apart, they take turns. */
-    const bool along_x = x.most == y.most ? depth % 2 == 0 : x.most > y.most;
-    const struct halves *worse = along_x ? &x : &y;
-    const size_t first = hints_in(hint, n, worse->r[0]);
-    refine(j, worse->r[0], worse->value[0], hint, first, depth + 1);
-    refine(j, worse->r[1], worse->value[1], hint + first, n - first, depth + 1);
+    for (int i = 0; i < 4; i++)
+        half[i] = r;
+    half[0].x1 = half[1].x0 = (r.x0 + r.x1) / 2;
+    half[2].y1 = half[3].y0 = (r.y0 + r.y1) / 2;
 }
 
-void quadrature(quadrature_fn *f, const void *context, int parts,
-                struct rectangle r, double tolerance, long *budget,
-                struct quadrature_hint *hint, size_t n, struct estimate *out)
+static bool push(struct work *w, struct leaf l)
 {
-    struct job j = { f, context, parts, tolerance, budget, out };
-    double whole[QUADRATURE_PARTS_MAX];
-    (void)rule(&j, r, whole);
+    if (w->leaves == w->size) {
+        const size_t size = 2 * w->size + 1024;
+        struct leaf *grown = realloc(w->leaf, size * sizeof *grown);
+        if (!grown)
+            return false;
+        w->leaf = grown;
+        w->size = size;
+    }
+    w->leaf[w->leaves++] = l;
+    return true;
+}
 
-    /* On a graded mesh what a rectangle does not see its neighbours do: a
-     * thousandth of the tolerance need not be looked at more closely. */
-    bool negligible = n == 0;
-    for (int part = 0; part < parts; part++)
-        negligible &= fabs(whole[part]) <= tolerance * 1e-3;
-    if (!negligible) {
-        refine(&j, r, whole, hint, n, 0);
-        return;
+/* How far the sum of two halves is off the whole, in tolerances. */
+static double disagreement(const struct work *w, const struct leaf *l,
+                           const struct found half[2], double *off)
+{
+    double most = 0;
+    for (int part = 0; part < w->parts; part++) {
+        off[part] =
+            half[0].value[part] + half[1].value[part] - l->whole.value[part];
+        if (!(fabs(off[part]) <= most * w->tolerance)) /* or NaN */
+            most = fabs(off[part]) / w->tolerance;
     }
-    for (int part = 0; part < parts; part++) {
-        out[part].value += whole[part];
-        out[part].error += fabs(whole[part]);
+    return most;
+}
+
+/* Accepts a leaf, or puts its worse halves on the stack. */
+static bool settle(struct work *w, const struct leaf *l,
+                   const struct found half[4])
+{
+    double off_x[PARTS], off_y[PARTS];
+    const double x = disagreement(w, l, half, off_x);
+    const double y = disagreement(w, l, half + 2, off_y);
+    const double height = fmax(fmax(half[0].height, half[1].height),
+                               fmax(half[2].height, half[3].height));
+    /* A NaN is not looked into. */
+    if ((!(x + y > 1) && met(l, height)) || l->depth == DEPTH_MAX ||
+        *w->budget <= 0) {
+        for (int part = 0; part < w->parts; part++) {
+            l->out[part].value +=
+                l->whole.value[part] + off_x[part] + off_y[part];
+            l->out[part].error += fabs(off_x[part]) + fabs(off_y[part]);
+        }
+        return true;
     }
+    /* Where nothing tells the axes apart, they take turns. */
+    const int axis = (x == y ? l->depth % 2 == 0 : x > y) ? 0 : 2;
+    struct rectangle part[4];
+    halves(l->r, part);
+    struct leaf child = *l;
+    const size_t first = hints_in(l->hint, l->n, part[axis]);
+    child.depth++;
+    child.r = part[axis];
+    child.whole = half[axis];
+    child.n = first;
+    if (!push(w, child))
+        return false;
+    child.r = part[axis + 1];
+    child.whole = half[axis + 1];
+    child.hint = l->n ? l->hint + first : NULL;
+    child.n = l->n - first;
+    return push(w, child);
+}
+
+/* Refines the last leaves of the stack until it is empty. */
+static bool refine(struct work *w)
+{
+    struct leaf taken[LEAVES];
+    struct rectangle r[RULES];
+    struct found found[RULES];
+    while (w->leaves > 0) {
+        const size_t n = w->leaves < LEAVES ? w->leaves : LEAVES;
+        w->leaves -= n;
+        for (size_t i = 0; i < n; i++) {
+            taken[i] = w->leaf[w->leaves + i];
+            halves(taken[i].r, r + 4 * i);
+        }
+        rules(w, r, 4 * n, found);
+        for (size_t i = 0; i < n; i++)
+            if (!settle(w, &taken[i], found + 4 * i))
+                return false;
+    }
+    return true;
+}
+
+/* The first rule on up to RULES jobs. */
+static bool begin(struct work *w, const struct quadrature_job *job, size_t n)
+{
+    struct rectangle r[RULES];
+    struct found found[RULES];
+    for (size_t i = 0; i < n; i++)
+        r[i] = job[i].r;
+    rules(w, r, n, found);
+    for (size_t i = 0; i < n; i++) {
+        /* On a graded mesh what a rectangle does not see its neighbours do: a
+         * thousandth of the tolerance need not be looked at more closely. */
+        bool negligible = job[i].n == 0;
+        for (int part = 0; part < w->parts; part++)
+            negligible &= fabs(found[i].value[part]) <= w->tolerance * 1e-3;
+        for (int part = 0; negligible && part < w->parts; part++) {
+            job[i].out[part].value += found[i].value[part];
+            job[i].out[part].error += fabs(found[i].value[part]);
+        }
+        if (!negligible &&
+            !push(w, (struct leaf){ job[i].r, found[i], job[i].hint, job[i].n,
+                                    job[i].out, 0 }))
+            return false;
+    }
+    return true;
+}
+
+bool quadrature(quadrature_fn *f, const void *context, int parts,
+                const struct quadrature_job *job, size_t jobs, double tolerance,
+                long *budget)
+{
+    struct work w = { .f = f,
+                      .context = context,
+                      .parts = parts,
+                      .tolerance = tolerance,
+                      .budget = budget,
+                      .room = malloc(sizeof *w.room) };
+    bool ok = w.room;
+    for (size_t at = 0; ok && at < jobs; at += RULES)
+        ok = begin(&w, job + at, jobs - at < RULES ? jobs - at : RULES) &&
+             refine(&w);
+    free(w.leaf);
+    free(w.room);
+    return ok;
 }
 
 size_t mesh_grade(const double *edges, size_t n, double widest, double *graded,

@@ -1,4 +1,4 @@
-/* quadrature.h - integrals over rectangles, with an error bound
+/* quadrature.h - integrals over many rectangles, with an error bound
  *
  * A rectangle is integrated by a 6 x 6 Gauss-Legendre rule, compared with the
  * sums over its halves along x and along y, and split along the worse of the
@@ -9,40 +9,58 @@
  * never laid over it, and have its edges where the integrand has kinks; and
  * where the integrand is known to be large, as at a sampled direction, a hint
  * keeps the rule splitting until its nodes have seen that.
+ *
+ * All rectangles are refined side by side, so that the integrand is asked for
+ * thousands of values at once.  The result does not depend on how they are
+ * grouped.
  */
 #ifndef VALIDATE_QUADRATURE_H
 #define VALIDATE_QUADRATURE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "validate/estimate.h"
 
-enum { QUADRATURE_ORDER = 6, QUADRATURE_PARTS_MAX = 5 };
+enum { QUADRATURE_ORDER = 6, QUADRATURE_PARTS_MAX = 6 };
+enum {
+    QUADRATURE_NODES = QUADRATURE_ORDER * QUADRATURE_ORDER,
+    QUADRATURE_RULES = 256 /* the most at once */
+};
 
 struct rectangle {
     double x0, x1, y0, y1;
 };
 
-/** Fills value[(part * ORDER + i) * ORDER + k] with the part-th integrand at
- * (x[i], y[k]). */
-typedef void quadrature_fn(const void *context,
-                           const double x[QUADRATURE_ORDER],
-                           const double y[QUADRATURE_ORDER], double *value);
+/** Fills value[part * n * NODES + rule * NODES + i * ORDER + k] with the
+ * part-th integrand at (x[rule][i], y[rule][k]), for n rules, at most RULES. */
+typedef void quadrature_fn(const void *context, size_t n,
+                           const double (*x)[QUADRATURE_ORDER],
+                           const double (*y)[QUADRATURE_ORDER], double *value);
 
-/** A point in the rectangle, and the largest |integrand| of any part there. */
+/** A point in a rectangle, and the largest |integrand| of any part there. */
 struct quadrature_hint {
     double x, y, height;
 };
 
-/** Adds the integrals over a rectangle to out[0 .. parts-1]; parts at most
+/** A rectangle, the n hints in it, which may be none and are put in another
+ * order, and where the integrals are added, an estimate a part. */
+struct quadrature_job {
+    struct rectangle r;
+    struct quadrature_hint *hint;
+    size_t n;
+    struct estimate *out;
+};
+
+/** Integrates over the rectangle of each job; parts at most
  * QUADRATURE_PARTS_MAX.  A leaf is accepted where the rules differ by at
  * most the tolerance, or where the budget of evaluations, shared by many calls,
  * is used up; either way the difference is in the error.  A leaf with hints
- * must have met half of the greatest height among them too.  The n hints, which
- * may be none, are put in another order. */
-void quadrature(quadrature_fn *f, const void *context, int parts,
-                struct rectangle r, double tolerance, long *budget,
-                struct quadrature_hint *hint, size_t n, struct estimate *out);
+ * must have met half of the greatest height among them too.  False when out of
+ * memory. */
+bool quadrature(quadrature_fn *f, const void *context, int parts,
+                const struct quadrature_job *job, size_t jobs, double tolerance,
+                long *budget);
 
 /** Cuts the intervals between n sorted edges so that none is wider than widest
  * or more than twice as wide as the narrower one beside it was.  Writes at

@@ -30,27 +30,178 @@ void holm(struct verdict **verdict, size_t n, double significance)
     }
 }
 
-static bool decide(struct run *run)
+/* Fresh samples count as a confirmation below this, and a result below it that
+ * is not rejected is doubtful. */
+static const double doubtful = 1e-3;
+
+static struct verdict *verdict_at(const struct run *run, size_t i)
+{
+    const size_t c = (size_t)checks_count();
+    return &run->result[i / c].verdict[i % c];
+}
+
+static bool statistical(const struct verdict *v)
+{
+    return v->applies && !isnan(v->p);
+}
+
+/* What fresh samples could change. */
+static bool open_still(const struct verdict *v)
+{
+    return statistical(v) && v->p > pvalue_impossible && !v->confirmed &&
+           (!v->passed || v->p < doubtful);
+}
+
+/* Holm's procedure over those of the run that are marked. */
+static bool decide(struct run *run, const bool *marked, double significance)
 {
     const size_t all = run->results * (size_t)checks_count();
-    struct verdict **statistical =
-        malloc((all ? all : 1) * sizeof *statistical);
-    if (!statistical)
+    struct verdict **list = malloc((all + 1) * sizeof *list);
+    size_t n = 0;
+    for (size_t i = 0; list && i < all; i++)
+        if (marked[i])
+            list[n++] = verdict_at(run, i);
+    if (list)
+        holm(list, n, significance);
+    free(list);
+    return list;
+}
+
+/* One more look at an open verdict, with what fresh samples say. */
+static bool judge_again(struct verdict *v, const struct verdict *fresh)
+{
+    if (!v->passed && fresh->p < doubtful) {
+        v->confirmed = true;
+        verdict_add(v, "; confirmed on %.3g fresh samples, p %.2g",
+                    (double)fresh->samples, fresh->p);
         return false;
-    for (size_t i = 0; i < run->results; i++)
-        for (int c = 0; c < checks_count(); c++) {
-            struct verdict *v = &run->result[i].verdict[c];
-            if (v->applies && !isnan(v->p))
-                statistical[run->statistical++] = v;
-        }
-    holm(statistical, run->statistical, run->plan.significance);
-    free(statistical);
-    for (size_t i = 0; i < run->results; i++)
-        for (int c = 0; c < checks_count(); c++)
-            if (run->result[i].verdict[c].applies)
-                ++*(run->result[i].verdict[c].passed ? &run->passed
-                                                     : &run->failed);
+    }
+    *v = *fresh;
     return true;
+}
+
+struct looked {
+    struct run *run;
+    bool *marked; /* one a verdict: open before, to be decided after */
+    int stage;    /* 0: everything */
+    run_progress *progress;
+    void *context;
+    size_t done, of;
+    bool ok;
+    struct err *err;
+};
+
+static void look_at(struct looked *l, size_t i)
+{
+    struct run *run = l->run;
+    struct result *r = &run->result[i];
+    struct subject subject;
+    struct err why;
+    const uint64_t samples = run->plan.samples << (2 * l->stage);
+    const bool made = subject_init_stage(&subject, r->bsdf, r->wo, &run->plan,
+                                         l->stage, samples, &why);
+    for (int k = 0; made && k < checks_count(); k++) {
+        bool *marked = &l->marked[i * (size_t)checks_count() + (size_t)k];
+        if (l->stage == 0) {
+            r->verdict[k] = check_run(k, &subject);
+            *marked = statistical(&r->verdict[k]);
+        } else if (*marked) {
+            const struct verdict fresh = check_run(k, &subject);
+            *marked = judge_again(&r->verdict[k], &fresh);
+        }
+    }
+    if (made)
+        subject_clear(&subject);
+#pragma omp critical(run_progress)
+    {
+        l->done++;
+        if (!made)
+            l->ok = err_set(l->err, "%s", why.text);
+        if (l->progress)
+            l->progress(l->context, l->done, l->of);
+    }
+}
+
+static bool wanted(const struct looked *l, size_t i)
+{
+    const size_t c = (size_t)checks_count();
+    bool any = l->stage == 0;
+    for (size_t k = 0; k < c; k++)
+        any |= l->marked[i * c + k];
+    return any;
+}
+
+/* Looks at what is marked, in parallel; no subject depends on another. */
+static bool look(struct looked *l)
+{
+    const size_t n = l->run->results;
+    const int threads = l->run->plan.threads;
+    for (size_t i = 0; i < n; i++)
+        l->of += wanted(l, i);
+#pragma omp parallel for schedule(dynamic, 1)                                  \
+    num_threads(threads ? threads : omp_get_max_threads())
+    for (size_t i = 0; i < n; i++)
+        if (wanted(l, i))
+            look_at(l, i);
+    return l->ok;
+}
+
+/* The first look, and further ones at what is open, each with four times the
+ * samples, fresh, at half the significance that was left. */
+static bool run_stages(struct run *run, run_progress *progress, void *context,
+                       struct err *err)
+{
+    const size_t all = run->results * (size_t)checks_count();
+    struct looked l = { .run = run,
+                        .marked = calloc(all + 1, sizeof *l.marked),
+                        .progress = progress,
+                        .context = context,
+                        .ok = true,
+                        .err = err };
+    bool ok = l.marked || err_set(err, "out of memory");
+    double left = run->plan.significance;
+    for (l.stage = 0; ok && l.stage <= run->plan.escalations; l.stage++) {
+        size_t marked = 0;
+        for (size_t i = 0; l.stage > 0 && i < all; i++)
+            marked += l.marked[i] = open_still(verdict_at(run, i));
+        if (l.stage > 0 && marked == 0)
+            break;
+        if (l.stage < run->plan.escalations)
+            left /= 2;
+        ok = look(&l) &&
+             (decide(run, l.marked, left) || err_set(err, "out of memory"));
+        for (size_t i = 0; l.stage > 0 && i < all; i++)
+            if (l.marked[i])
+                verdict_at(run, i)->confirmed = !verdict_at(run, i)->passed;
+    }
+    free(l.marked);
+    return ok;
+}
+
+static void count(struct run *run)
+{
+    const size_t all = run->results * (size_t)checks_count();
+    for (size_t i = 0; i < all; i++) {
+        const struct verdict *v = verdict_at(run, i);
+        run->passed += v->applies && v->passed;
+        run->failed += v->applies && !v->passed;
+        run->statistical += statistical(v);
+    }
+}
+
+/* What each that passed would have found at the first look. */
+static void effects(struct run *run)
+{
+    const size_t all = run->results * (size_t)checks_count();
+    const double share = run->plan.escalations > 0 ? 0.5 : 1;
+    for (size_t i = 0; i < all; i++) {
+        struct verdict *v = verdict_at(run, i);
+        if (!v->applies || !v->passed)
+            v->effect[0] = '\0';
+        else if (statistical(v))
+            verdict_effect(v, share * run->plan.significance /
+                                  (double)run->statistical);
+    }
 }
 
 bool run_checks(struct run *run, const struct plan *plan,
@@ -65,8 +216,8 @@ bool run_checks(struct run *run, const struct plan *plan,
     bool ok = run->result;
     for (size_t i = 0; ok && i < bsdfs; i++) {
         struct vec3 own[RUN_DIRECTIONS_MAX];
-        const size_t count = wos ? wos : run_directions(bsdf[i], own);
-        for (size_t k = 0; ok && k < count; k++) {
+        const size_t n = wos ? wos : run_directions(bsdf[i], own);
+        for (size_t k = 0; ok && k < n; k++) {
             struct result *r = &run->result[run->results++];
             r->bsdf = bsdf[i];
             r->wo = wos ? wo[k] : own[k];
@@ -74,41 +225,16 @@ bool run_checks(struct run *run, const struct plan *plan,
             ok = r->verdict;
         }
     }
+    if (!ok)
+        err_set(err, "out of memory");
+    ok = ok && run_stages(run, progress, context, err);
     if (!ok) {
         run_clear(run);
-        return err_set(err, "out of memory");
+        return false;
     }
-
-    size_t done = 0;
-    const size_t n = run->results;
-    const int threads = plan->threads ? plan->threads : omp_get_max_threads();
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-    for (size_t i = 0; i < n; i++) {
-        struct result *r = &run->result[i];
-        struct subject subject;
-        struct err why;
-        const bool made =
-            subject_init(&subject, r->bsdf, r->wo, &run->plan, &why);
-        for (int k = 0; made && k < checks_count(); k++)
-            r->verdict[k] = check_run(checks[k], &subject);
-        if (made)
-            subject_clear(&subject);
-#pragma omp critical(run_progress)
-        {
-            done++;
-            if (!made) {
-                ok = false;
-                err_set(err, "%s", why.text);
-            }
-            if (progress)
-                progress(context, done, n);
-        }
-    }
-    if (ok && !decide(run))
-        ok = err_set(err, "out of memory");
-    if (!ok)
-        run_clear(run);
-    return ok;
+    count(run);
+    effects(run);
+    return true;
 }
 
 void run_clear(struct run *run)

@@ -4,6 +4,16 @@
  * the i-th smallest of m is held against significance / (m - i + 1), and the
  * first that is not below its level, with all behind it, passes.
  *
+ * With escalations it spends the significance over further looks: half of it at
+ * the first, half of the rest at the next, and what is left at the last.
+ * A rejection is looked at again with four times the samples, fresh ones, and
+ * stands when their p is below .001; and so is a result that is doubtful, with
+ * p below .001 but not rejected, which the fresh samples alone decide.  They do
+ * not depend on what chose it, so Holm's procedure shares the level of a look
+ * among those that it is for.  At most two looks more, by default.
+ *
+ * A. Gandy and J. Scott, Unit Testing for MCMC and other Monte Carlo Methods,
+ * arXiv 2001.06465, 2020 (sequential testing of doubtful results).
  * S. Holm, A Simple Sequentially Rejective Multiple Test Procedure,
  * Scandinavian Journal of Statistics 6(2), 1979.
  */

@@ -3,68 +3,130 @@
 
 #include <stdlib.h>
 
-enum { ORDER = QUADRATURE_ORDER, NODES = ORDER * ORDER };
+enum { ORDER = QUADRATURE_ORDER, NODES = QUADRATURE_NODES };
 
-struct patch_job {
+/* The integrand, and room for a batch of directions. */
+struct over {
     sphere_fn *f;
     const void *context;
     int parts;
+    size_t size;
+    double *x, *y, *z, *sine;
 };
 
-static void on_patch(const void *context, const double theta[ORDER],
-                     const double phi[ORDER], double *value)
+static bool over_make(struct over *o, size_t size)
 {
-    const struct patch_job *j = context;
-    double x[NODES], y[NODES], z[NODES], sine[ORDER], cp[ORDER], sp[ORDER];
-    for (int k = 0; k < ORDER; k++) {
-        cp[k] = cos(phi[k]);
-        sp[k] = sin(phi[k]);
-    }
-    for (int i = 0, at = 0; i < ORDER; i++) {
-        const double c = cos(theta[i]);
-        sine[i] = sin(theta[i]);
-        for (int k = 0; k < ORDER; k++, at++) {
-            x[at] = sine[i] * cp[k];
-            y[at] = sine[i] * sp[k];
-            z[at] = c;
+    double *room = malloc(4 * size * sizeof *room);
+    o->size = size;
+    o->x = room;
+    o->y = room ? room + size : NULL;
+    o->z = room ? room + 2 * size : NULL;
+    o->sine = room ? room + 3 * size : NULL;
+    return room;
+}
+
+static void on_patches(const void *context, size_t n,
+                       const double (*theta)[ORDER], const double (*phi)[ORDER],
+                       double *value)
+{
+    const struct over *o = context;
+    for (size_t rule = 0, at = 0; rule < n; rule++) {
+        double cp[ORDER], sp[ORDER];
+        for (int k = 0; k < ORDER; k++) {
+            cp[k] = cos(phi[rule][k]);
+            sp[k] = sin(phi[rule][k]);
+        }
+        for (int i = 0; i < ORDER; i++) {
+            const double c = cos(theta[rule][i]), s = sin(theta[rule][i]);
+            for (int k = 0; k < ORDER; k++, at++) {
+                o->x[at] = s * cp[k];
+                o->y[at] = s * sp[k];
+                o->z[at] = c;
+                o->sine[at] = s;
+            }
         }
     }
-    j->f(j->context, NODES, (struct dirs){ x, y, z }, value);
-    for (int part = 0, at = 0; part < j->parts; part++)
-        for (int i = 0; i < ORDER; i++)
-            for (int k = 0; k < ORDER; k++, at++)
-                value[at] *= sine[i];
+    o->f(o->context, n * NODES, (struct dirs){ o->x, o->y, o->z }, value);
+    for (int part = 0; part < o->parts; part++, value += n * NODES)
+        for (size_t at = 0; at < n * NODES; at++)
+            value[at] *= o->sine[at];
 }
 
-/* Where a direction is in a patch, and how large the integrand is there. */
-static struct quadrature_hint hint_of(const struct patch_job *j, struct patch p,
-                                      struct vec3 w)
+/* Where a direction is in a patch. */
+static struct quadrature_hint hint_of(struct patch p, struct vec3 w)
 {
-    double value[QUADRATURE_PARTS_MAX];
-    const double sine = sqrt(w.x * w.x + w.y * w.y);
     const double middle = (p.phi0 + p.phi1) / 2;
-    struct quadrature_hint h = {
-        .x = atan2(sine, w.z),
+    return (struct quadrature_hint){
+        .x = atan2(sqrt(w.x * w.x + w.y * w.y), w.z),
         .y = middle + remainder(atan2(w.y, w.x) - middle, 2 * PI),
     };
-    j->f(j->context, 1, (struct dirs){ &w.x, &w.y, &w.z }, value);
-    for (int part = 0; part < j->parts; part++)
-        h.height = fmax(h.height, fabs(value[part]) * sine);
-    return h;
 }
 
-void patch_integrate(sphere_fn *f, const void *context, int parts,
-                     struct patch p, double tolerance, long *budget,
-                     const struct vec3 *hint, size_t n, struct estimate *out)
+/* How large the integrand is at n directions, for which o has room. */
+static void heights(const struct over *o, size_t n, double *value,
+                    struct quadrature_hint *hint)
 {
-    const struct patch_job j = { f, context, parts };
-    struct quadrature_hint place[PATCH_HINTS_MAX];
-    n = n < PATCH_HINTS_MAX ? n : PATCH_HINTS_MAX;
-    for (size_t i = 0; i < n; i++)
-        place[i] = hint_of(&j, p, hint[i]);
-    quadrature(on_patch, &j, parts,
-               (struct rectangle){ p.theta0, p.theta1, p.phi0, p.phi1 },
-               tolerance, budget, place, n, out);
+    o->f(o->context, n, (struct dirs){ o->x, o->y, o->z }, value);
+    for (int part = 0; part < o->parts; part++, value += n)
+        for (size_t i = 0; i < n; i++)
+            hint[i].height =
+                fmax(hint[i].height, fabs(value[i]) * sin(hint[i].x));
+}
+
+static size_t heeded(const struct patch_job *job)
+{
+    return job->n < PATCH_HINTS_MAX ? job->n : PATCH_HINTS_MAX;
+}
+
+/* Fills the hints of all jobs, one job's behind another's. */
+static bool hints_make(const struct over *o, const struct patch_job *job,
+                       size_t jobs, struct quadrature_hint *hint)
+{
+    double *value = malloc(o->size * (size_t)o->parts * sizeof *value);
+    size_t waiting = 0;
+    for (size_t i = 0; value && i < jobs; i++)
+        for (size_t k = 0; k < heeded(&job[i]); k++) {
+            const struct vec3 w = job[i].hint[k];
+            o->x[waiting] = w.x, o->y[waiting] = w.y, o->z[waiting] = w.z;
+            hint[waiting++] = hint_of(job[i].patch, w);
+            if (waiting == o->size) {
+                heights(o, waiting, value, hint);
+                hint += waiting;
+                waiting = 0;
+            }
+        }
+    if (value && waiting > 0)
+        heights(o, waiting, value, hint);
+    free(value);
+    return value;
+}
+
+bool patches_integrate(sphere_fn *f, const void *context, int parts,
+                       const struct patch_job *job, size_t jobs,
+                       double tolerance, long *budget)
+{
+    struct over o = { .f = f, .context = context, .parts = parts };
+    size_t hints = 0;
+    for (size_t i = 0; i < jobs; i++)
+        hints += heeded(&job[i]);
+    struct quadrature_job *part = malloc((jobs + 1) * sizeof *part);
+    struct quadrature_hint *hint = malloc((hints + 1) * sizeof *hint);
+    bool ok = over_make(&o, QUADRATURE_RULES * NODES) && part && hint &&
+              hints_make(&o, job, jobs, hint);
+    for (size_t i = 0, at = 0; ok && i < jobs; i++) {
+        const struct patch p = job[i].patch;
+        part[i] =
+            (struct quadrature_job){ { p.theta0, p.theta1, p.phi0, p.phi1 },
+                                     hint + at,
+                                     heeded(&job[i]),
+                                     job[i].out };
+        at += heeded(&job[i]);
+    }
+    ok = ok && quadrature(on_patches, &o, parts, part, jobs, tolerance, budget);
+    free(part);
+    free(hint);
+    free(o.x);
+    return ok;
 }
 
 struct facing {
@@ -76,20 +138,22 @@ struct facing {
 /* theta as a share of the way to where w stops to face wo, or to the horizon:
  * w.wo = 0 at tan(theta) = -wo.z / (wo.x cos(phi) + wo.y sin(phi)).  So the
  * edge of what is faced is an edge of the mesh. */
-static void on_share(const void *context, const double share[ORDER],
-                     const double phi[ORDER], double *value)
+static void on_share(const void *context, size_t n,
+                     const double (*share)[ORDER], const double (*phi)[ORDER],
+                     double *value)
 {
     const struct facing *j = context;
-    for (int k = 0; k < ORDER; k++) {
-        const double c = cos(phi[k]), s = sin(phi[k]);
-        const double along = j->wo.x * c + j->wo.y * s;
-        const double last = along < 0 ? atan2(j->wo.z, -along) : PI / 2;
-        for (int i = 0; i < ORDER; i++) {
-            const double theta = share[i] * last, st = sin(theta);
-            const struct vec3 w = { st * c, st * s, cos(theta) };
-            value[i * ORDER + k] = st * last * j->f(w, j->context);
+    for (size_t rule = 0; rule < n; rule++, value += NODES)
+        for (int k = 0; k < ORDER; k++) {
+            const double c = cos(phi[rule][k]), s = sin(phi[rule][k]);
+            const double along = j->wo.x * c + j->wo.y * s;
+            const double last = along < 0 ? atan2(j->wo.z, -along) : PI / 2;
+            for (int i = 0; i < ORDER; i++) {
+                const double theta = share[rule][i] * last, st = sin(theta);
+                const struct vec3 w = { st * c, st * s, cos(theta) };
+                value[i * ORDER + k] = st * last * j->f(w, j->context);
+            }
         }
-    }
 }
 
 static int ascending(const void *a, const void *b)
@@ -127,14 +191,18 @@ hemisphere_facing(double (*f)(struct vec3 w, const void *context),
             phi[n++] = mark[i + 1] - ldexp(middle, -k);
         phi[n++] = mark[i + 1];
     }
+    struct quadrature_job job[RINGS * EDGES];
+    size_t jobs = 0;
     for (int ring = 0; ring < RINGS; ring++) {
         const double out = ldexp(1, -ring);
         const double in = ring == RINGS - 1 ? 0 : out / 2;
         for (size_t k = 0; k + 1 < n; k++)
-            quadrature(on_share, &j, 1,
-                       (struct rectangle){ in, out, phi[k], phi[k + 1] },
-                       tolerance, &budget, NULL, 0, &total);
+            job[jobs++] = (struct quadrature_job){
+                { in, out, phi[k], phi[k + 1] }, NULL, 0, &total
+            };
     }
+    if (!quadrature(on_share, &j, 1, job, jobs, tolerance, &budget))
+        total = (struct estimate){ NAN, NAN };
     return total;
 }
 

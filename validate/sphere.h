@@ -25,16 +25,26 @@ static inline struct vec3 patch_centre(struct patch p)
 typedef void sphere_fn(const void *context, size_t n, struct dirs w,
                        double *value);
 
-/** Adds the integrals over a patch to out; see quadrature.  The n directions in
- * it, which may be none, are where the integrand is known to be large; at most
- * PATCH_HINTS_MAX are heeded. */
+/** A patch, the n directions in it where the integrand is known to be large,
+ * of which at most PATCH_HINTS_MAX are heeded, and where its integrals are
+ * added, an estimate a part. */
 enum { PATCH_HINTS_MAX = 256 };
-void patch_integrate(sphere_fn *f, const void *context, int parts,
-                     struct patch p, double tolerance, long *budget,
-                     const struct vec3 *hint, size_t n, struct estimate *out);
+struct patch_job {
+    struct patch patch;
+    const struct vec3 *hint;
+    size_t n;
+    struct estimate *out;
+};
+
+/** Integrates over the patch of each job; see quadrature.  False when out of
+ * memory. */
+bool patches_integrate(sphere_fn *f, const void *context, int parts,
+                       const struct patch_job *job, size_t jobs,
+                       double tolerance, long *budget);
 
 /** The integral over the upper hemisphere of a function that may peak at the
- * normal, down to a width of 1e-5 rad, and along the x and y axes. */
+ * normal, down to a width of 1e-5 rad, and along the x and y axes; NaN when out
+ * of memory. */
 struct estimate hemisphere(double (*f)(struct vec3 w, const void *context),
                            const void *context);
 

@@ -9,15 +9,29 @@
 #define VALIDATE_VERDICT_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "bsdf/vec.h"
 
-/** One of the p-values that a check's own is made of. */
+/** One of the p-values that a check's own is made of, and how it grows with a
+ * mistake of relative size d: a chi-square of so many degrees has the
+ * non-centrality scale d^2, a normal statistic the mean scale d, a Poisson
+ * count of a mean that is known scale d more. */
 struct verdict_part {
     const char *name; /* "coarse", "total" ... */
     double p;         /* conservative where the statistic is discrete */
     double uniform;   /* randomised there, so that it is uniform for a sound
-                         model: for calibration alone */
+                         model, and NaN where it cannot be: for calibration */
+    enum part_kind {
+        PART_OTHER,
+        PART_CHI_SQUARE,
+        PART_NORMAL,
+        PART_POISSON
+    } kind;
+    long degrees;
+    double mean, scale;
+    const char *effect; /* what would be wrong by d, "the pdf, over half of
+                           the lobe,"; NULL: not stated */
 };
 
 enum { VERDICT_PARTS_MAX = 12 };
@@ -33,6 +47,9 @@ struct verdict {
     const char *unit; /* of value and limit; "" where it has none */
     double p;         /* probability of a sound model doing worse; NaN
                          where the check is not statistical */
+
+    uint64_t samples; /* that were drawn for it */
+    bool confirmed;   /* a rejection that fresh samples agree with */
 
     bool has_wi;
     struct vec3 wo, wi;  /* worst directions; wi only where has_wi */
@@ -50,5 +67,19 @@ __attribute__((format(printf, 2, 3))) void
 verdict_note(struct verdict *v, const char *format, ...);
 __attribute__((format(printf, 2, 3))) void verdict_add(struct verdict *v,
                                                        const char *format, ...);
+
+/** Adds to the effect, behind a semicolon. */
+__attribute__((format(printf, 2, 3))) void
+verdict_found(struct verdict *v, const char *format, ...);
+
+/** Adds a part; the check's p is made of all, see verdict_combine. */
+void verdict_part(struct verdict *v, struct verdict_part part);
+
+/** p by Bonferroni over the parts: the whole check has one. */
+void verdict_combine(struct verdict *v);
+
+/** Says of a verdict whose p passed what it would have found, where each p is
+ * held against the level. */
+void verdict_effect(struct verdict *v, double level);
 
 #endif

@@ -1,0 +1,322 @@
+/* survey.c - pilots, bins, masses, and the one pass of samples */
+#include <stdlib.h>
+
+#include "validate/subject.h"
+
+enum { PILOTS = 16384, BATCH = SUBJECT_BATCH };
+
+/* Leaves of this accuracy, some thousands of them, keep the whole within 1e-7;
+ * the bound that is carried along says how well it went. */
+static const double mass_tolerance = 1e-10;
+static const long mass_budget = 20000000;
+
+const double survey_unknown = 1e-7;
+
+/* What no sample may be, whatever the model. */
+static bool bad(const struct subject *s, const struct bsdf_sample *a)
+{
+    for (int b = 0; b < BANDS_MAX; b++)
+        if (!(a->weight.band[b] >= 0 && isfinite(a->weight.band[b])))
+            return true;
+    return !isfinite(a->pdf) || (!subject_refused(a) &&
+                                 !(a->pdf > 0 && fabs(vec3_length(a->wi) - 1) <=
+                                                     subject_unit_error(s)));
+}
+
+static double difference(const struct delta *d, const struct bsdf_sample *a)
+{
+    const struct vec3 off = vec3_add(a->wi, vec3_scale(-1, d->wi));
+    double sum = vec3_length(off) + fabs(a->pdf - d->pdf);
+    for (int b = 0; b < BANDS_MAX; b++)
+        sum += fabs(a->weight.band[b] - d->weight.band[b]);
+    return sum;
+}
+
+/* A direction is another one from 1e-6 away. */
+static void delta_count(struct survey *v, const struct bsdf_sample *a)
+{
+    for (int k = 0; k < v->deltas; k++) {
+        struct delta *d = &v->delta[k];
+        if (vec3_length(vec3_add(a->wi, vec3_scale(-1, d->wi))) < 1e-6) {
+            d->count++;
+            const double off = difference(d, a);
+            if (!(off <= d->spread)) /* a NaN stays */
+                d->spread = off;
+            return;
+        }
+    }
+    if (v->deltas == DELTAS_MAX) {
+        v->delta_others++;
+        return;
+    }
+    v->delta[v->deltas++] = (struct delta){
+        .wi = a->wi, .pdf = a->pdf, .weight = a->weight, .count = 1
+    };
+}
+
+/* The largest band of a weight as energy. */
+static double largest(const struct subject *s, const struct bsdf_sample *a)
+{
+    double most = 0;
+    for (int b = 0; b < BANDS_MAX; b++)
+        most = fmax(most, a->weight.band[b]);
+    return most * subject_compression(s, a->wi);
+}
+
+static void weigh(struct subject *s, const struct bsdf_sample *a, int bands)
+{
+    struct survey *v = &s->survey;
+    const double compression = subject_compression(s, a->wi);
+    for (int b = 0; b < bands; b++) {
+        struct weight_sums *sums = &v->weight[b];
+        double w = a->weight.band[b] * compression;
+        w = w > v->cap ? v->cap : w; /* a NaN stays */
+        sums->sum += w;
+        sums->square += w * w;
+        if (!a->delta)
+            sums->peak += w * w * a->pdf;
+    }
+}
+
+/* What a batch of n samples holds, but for those that have a bin: their
+ * directions go to wi, of which there is room for BATCH. */
+static size_t sort(struct subject *s, const struct bsdf_sample *a, size_t n,
+                   double *wi[3])
+{
+    struct survey *v = &s->survey;
+    const int bands = bsdf_bands(s->bsdf)->count;
+    size_t spread = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (bad(s, &a[i]) && v->bad++ == 0)
+            v->first_bad = a[i];
+        if (subject_refused(&a[i])) {
+            v->refused++;
+            continue;
+        }
+        weigh(s, &a[i], bands);
+        if (a[i].delta) {
+            delta_count(v, &a[i]);
+        } else {
+            wi[0][spread] = a[i].wi.x;
+            wi[1][spread] = a[i].wi.y;
+            wi[2][spread++] = a[i].wi.z;
+        }
+    }
+    return spread;
+}
+
+static bool samples_draw(struct subject *s)
+{
+    struct survey *v = &s->survey;
+    const struct rng rng = subject_rng(s, STREAM_SURVEY);
+    const size_t bins = partition_bins(v->partition);
+    double x[BATCH], y[BATCH], z[BATCH], *wi[3] = { x, y, z };
+    uint32_t bin[BATCH];
+    struct bsdf_sample *sample = malloc(BATCH * sizeof *sample);
+    v->samples = s->samples;
+    for (uint64_t at = 0; sample && at < v->samples; at += BATCH) {
+        const uint64_t left = v->samples - at;
+        const size_t n = left < BATCH ? (size_t)left : BATCH;
+        subject_draw(s, rng, at, n, sample);
+        const size_t spread = sort(s, sample, n, wi);
+        partition_find(v->partition, spread, (struct dirs){ x, y, z }, bin);
+        for (size_t i = 0; i < spread; i++) {
+            if (bin[i] < bins)
+                v->count[bin[i]]++;
+            else
+                v->stray++;
+        }
+    }
+    free(sample);
+    return sample;
+}
+
+static void pdf_at(const void *context, size_t n, struct dirs w, double *value)
+{
+    subject_pdf(context, n, w, value);
+}
+
+/* Directions of samples that fell into one of the bins that have a slot, HINTS
+ * a slot at most. */
+enum { HINTS = 64 };
+struct slots {
+    size_t *of_bin; /* 1 + the slot, or 0 */
+    size_t *n;
+    struct vec3 *hint;
+    size_t count;
+};
+
+static void slots_fill(const struct subject *s, struct slots *slots,
+                       struct bsdf_sample *sample)
+{
+    const struct survey *v = &s->survey;
+    const struct rng rng = subject_rng(s, STREAM_SURVEY);
+    const size_t bins = partition_bins(v->partition);
+    for (uint64_t at = 0; at < v->samples; at += BATCH) {
+        const uint64_t left = v->samples - at;
+        const size_t n = left < BATCH ? (size_t)left : BATCH;
+        subject_draw(s, rng, at, n, sample);
+        for (size_t i = 0; i < n; i++) {
+            uint32_t bin;
+            if (!subject_spread(&sample[i]))
+                continue;
+            partition_find(v->partition, 1,
+                           (struct dirs){ &sample[i].wi.x, &sample[i].wi.y,
+                                          &sample[i].wi.z },
+                           &bin);
+            const size_t k = bin < bins ? slots->of_bin[bin] : 0;
+            if (k > 0 && slots->n[k - 1] < HINTS)
+                slots->hint[(k - 1) * HINTS + slots->n[k - 1]++] = sample[i].wi;
+        }
+    }
+}
+
+/* Where the integral of a bin fell short of what was drawn there by far, it may
+ * have missed a ridge: it is taken again with drawn directions as hints.  A
+ * better integral is all that this can give, so a sampler that is wrong stays
+ * wrong.  False when out of memory. */
+static bool look_again(struct subject *s, double tolerance)
+{
+    struct survey *v = &s->survey;
+    const size_t bins = partition_bins(v->partition);
+    struct slots slots = { .of_bin = calloc(bins, sizeof *slots.of_bin) };
+    struct bsdf_sample *sample = malloc(BATCH * sizeof *sample);
+    for (size_t i = 0; slots.of_bin && i < bins; i++) {
+        const double expected =
+            (v->mass[i].value + v->mass[i].error) * (double)v->samples;
+        if ((double)v->count[i] > expected + 4 * sqrt(expected + 4))
+            slots.of_bin[i] = ++slots.count;
+    }
+    slots.hint = malloc((slots.count * HINTS + 1) * sizeof *slots.hint);
+    slots.n = calloc(slots.count + 1, sizeof *slots.n);
+    struct patch_job *job = malloc((slots.count + 1) * sizeof *job);
+    bool ok = slots.of_bin && sample && slots.hint && slots.n && job;
+    if (ok && slots.count > 0) {
+        long budget = mass_budget;
+        slots_fill(s, &slots, sample);
+        for (size_t i = 0; i < bins; i++) {
+            const size_t k = slots.of_bin[i];
+            if (k == 0)
+                continue;
+            v->mass[i] = (struct estimate){ 0, 0 };
+            job[k - 1] = (struct patch_job){ partition_patch(v->partition, i),
+                                             slots.hint + (k - 1) * HINTS,
+                                             slots.n[k - 1], &v->mass[i] };
+        }
+        ok = patches_integrate(pdf_at, s, 1, job, slots.count, tolerance,
+                               &budget);
+    }
+    free(job);
+    free(slots.n);
+    free(slots.hint);
+    free(sample);
+    free(slots.of_bin);
+    return ok;
+}
+
+/* Up to PILOTS directions on each side; more are drawn than usual where few of
+ * them come on a side that has any, lest a rare lobe be lost.  NULL when out of
+ * memory. */
+static struct vec3 *pilots_draw(struct subject *s, size_t *n)
+{
+    enum { ENOUGH = 500, ROUNDS = 64 };
+    const struct rng rng = subject_rng(s, STREAM_PILOT);
+    const unsigned lobes = s->claims.lobes & ~(unsigned)BSDF_DELTA;
+    struct vec3 *pilot = malloc(2 * PILOTS * sizeof *pilot);
+    struct bsdf_sample *sample = malloc(BATCH * sizeof *sample);
+    size_t count[2] = { 0, 0 };
+    bool rare = true;
+    *n = 0;
+    for (uint64_t at = 0; pilot && sample && at < ROUNDS * PILOTS;
+         at += BATCH) {
+        if (at >= PILOTS && !rare)
+            break;
+        subject_draw(s, rng, at, BATCH, sample);
+        for (size_t i = 0; i < BATCH; i++) {
+            const bool through = sample[i].wi.z * s->wo.z < 0;
+            const double w = largest(s, &sample[i]);
+            if (isfinite(w))
+                s->survey.cap = fmax(s->survey.cap, 1.25 * w);
+            if (!subject_spread(&sample[i]) ||
+                !(vec3_dot(sample[i].wi, sample[i].wi) > 0.5) ||
+                count[through] == PILOTS)
+                continue;
+            count[through]++;
+            pilot[(*n)++] = sample[i].wi;
+        }
+        rare = ((lobes & BSDF_REFLECTION) && count[0] < ENOUGH) ||
+               ((lobes & BSDF_TRANSMISSION) && count[1] < ENOUGH);
+    }
+    if (!sample) {
+        free(pilot);
+        pilot = NULL;
+    }
+    free(sample);
+    return pilot;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The median of the rounding over pilots. */
+static double typical_rounding(const struct subject *s,
+                               const struct vec3 *pilot, size_t n)
+{
+    enum { LOOKS = 65 };
+    double off[LOOKS];
+    const size_t looks = n < LOOKS ? n : LOOKS;
+    for (size_t i = 0; i < looks; i++)
+        off[i] = subject_rounding(s, pilot[i * (n / looks)], true);
+    qsort(off, looks, sizeof *off, ascending);
+    return looks ? off[looks / 2] : 0;
+}
+
+bool survey_make(struct subject *s, struct err *err)
+{
+    struct survey *v = &s->survey;
+    size_t n;
+    struct vec3 *pilot = pilots_draw(s, &n);
+    if (pilot) {
+        v->partition = partition_new(pilot, n);
+        v->rounding = typical_rounding(s, pilot, n);
+    }
+    free(pilot);
+    const size_t bins = v->partition ? partition_bins(v->partition) : 1;
+    v->mass = calloc(bins, sizeof *v->mass);
+    v->count = calloc(bins, sizeof *v->count);
+    /* What rounding puts off a full bin, no rule can agree on; the bound is
+     * of a whole, and so of every part of it. */
+    const double tolerance = mass_tolerance + v->rounding / 400;
+    if (!v->partition || !v->mass || !v->count ||
+        !partition_integrate(v->partition, pdf_at, s, 1, tolerance, mass_budget,
+                             v->mass) ||
+        !samples_draw(s) || !look_again(s, tolerance)) {
+        survey_clear(v);
+        return err_set(err, "out of memory");
+    }
+    for (size_t i = 0; i < bins; i++) {
+        v->mass[i].error += v->rounding * fabs(v->mass[i].value);
+        v->total = estimate_add(v->total, v->mass[i]);
+    }
+    v->total.error += survey_unknown * v->total.value;
+    return true;
+}
+
+void survey_clear(struct survey *v)
+{
+    partition_free(v->partition);
+    free(v->mass);
+    free(v->count);
+    *v = (struct survey){ 0 };
+}
+
+struct estimate survey_refusal(const struct survey *v)
+{
+    struct estimate left = { 1 - v->total.value, v->total.error };
+    for (int k = 0; k < v->deltas; k++)
+        left.value -= v->delta[k].pdf;
+    return left;
+}
