@@ -57,7 +57,10 @@ static struct bsdf_claims claims(const void *state, const struct bands *bands)
     const unsigned lobes[] = { BSDF_DELTA_REFLECTION | BSDF_DELTA_TRANSMISSION,
                                BSDF_DELTA_REFLECTION, BSDF_DELTA_TRANSMISSION };
     return (struct bsdf_claims){
-        .lobes = lobes[m->lobes],
+        /* Schlick's F grows to 1 at grazing even there. */
+        .lobes =
+            lobes[m->lobes] &
+            ~(m->eta == 1 && m->fresnel == EXACT ? BSDF_DELTA_REFLECTION : 0u),
         .lossless = m->lobes == BOTH &&
                     spectrum_is(m->specular_reflectance, bands->count, 1) &&
                     spectrum_is(m->specular_transmittance, bands->count, 1),

@@ -39,9 +39,11 @@ static bool init(void *state, const struct bands *bands, struct err *err)
 
 static struct bsdf_claims claims(const void *state, const struct bands *bands)
 {
-    (void)state, (void)bands;
-    return (struct bsdf_claims){ .lobes = BSDF_DELTA_REFLECTION |
-                                          BSDF_DELTA_TRANSMISSION,
+    const struct thindielectric *m = state;
+    (void)bands;
+    return (struct bsdf_claims){ .lobes =
+                                     BSDF_DELTA_TRANSMISSION |
+                                     (m->eta != 1 ? BSDF_DELTA_REFLECTION : 0),
                                  .reciprocal = true,
                                  .two_sided = true,
                                  .eta = 1 };

@@ -226,7 +226,7 @@ static double time_chi2(const struct bsdf *b)
     for (int run = 0; run < CHI2_RUNS; run++) {
         const double start = seconds();
         struct subject s = look(b, dir_from_degrees(45, 0), &plan_default);
-        check_run(&check_chi2, &s);
+        check_run(checks_find("chi2"), &s);
         subject_clear(&s);
         time[run] = seconds() - start;
     }
@@ -235,7 +235,7 @@ static double time_chi2(const struct bsdf *b)
 
 /* -- the masses of bins ---------------------------------------------------- */
 
-/* As in validate/subject.c. */
+/* As in validate/survey.c. */
 static const double mass_tolerance = 1e-10;
 static const long mass_budget = 20000000;
 
@@ -250,10 +250,9 @@ enum { INTERVALS = 32, NODES = INTERVALS + 1, GAUSS = 16 };
 static void pdf_at(const void *context, size_t n, struct dirs w, double *pdf)
 {
     const struct lobe *l = context;
-    double x[NODES * NODES], y[NODES * NODES], z[NODES * NODES];
-    for (size_t i = 0; i < n; i++)
-        x[i] = l->wo.x, y[i] = l->wo.y, z[i] = l->wo.z;
-    bsdf_pdf_many(l->bsdf, n, (struct dirs){ x, y, z }, w, pdf);
+    const struct plan plan = { .seed = 1 };
+    const struct subject s = subject_plain(l->bsdf, l->wo, &plan);
+    subject_pdf(&s, n, w, pdf);
     *l->evaluations += (long)n;
 }
 

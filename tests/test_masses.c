@@ -5,13 +5,16 @@
 #include "tests/close.h"
 #include "validate/subject.h"
 
-static void polynomials_are_exact(const void *context, const double *x,
-                                  const double *y, double *value)
+static void polynomials_are_exact(const void *context, size_t n,
+                                  const double (*x)[QUADRATURE_ORDER],
+                                  const double (*y)[QUADRATURE_ORDER],
+                                  double *value)
 {
     (void)context;
-    for (int i = 0, at = 0; i < QUADRATURE_ORDER; i++)
-        for (int k = 0; k < QUADRATURE_ORDER; k++, at++)
-            value[at] = 12 * pow(x[i], 11) * 8 * pow(y[k], 7);
+    for (size_t rule = 0; rule < n; rule++)
+        for (int i = 0; i < QUADRATURE_ORDER; i++)
+            for (int k = 0; k < QUADRATURE_ORDER; k++)
+                *value++ = 12 * pow(x[rule][i], 11) * 8 * pow(y[rule][k], 7);
 }
 
 static void degree_eleven_is_exact(void **state)
@@ -19,8 +22,9 @@ static void degree_eleven_is_exact(void **state)
     (void)state;
     struct estimate e = { 0, 0 };
     long budget = 1000;
-    quadrature(polynomials_are_exact, NULL, 1, (struct rectangle){ 0, 1, 0, 2 },
-               1e-9, &budget, NULL, 0, &e);
+    const struct quadrature_job job = { { 0, 1, 0, 2 }, NULL, 0, &e };
+    assert_true(
+        quadrature(polynomials_are_exact, NULL, 1, &job, 1, 1e-9, &budget));
     assert_close(e.value, 256, 1e-12);
     assert_int_equal(budget, 1000 - 5 * 36);
 }
@@ -164,6 +168,13 @@ static void bins_agree_with_gsl(void **state)
     gsl_integration_cquad_workspace_free(outer);
 }
 
+static uint32_t bin_of(const struct partition *p, struct vec3 w)
+{
+    uint32_t bin;
+    partition_find(p, 1, (struct dirs){ &w.x, &w.y, &w.z }, &bin);
+    return bin;
+}
+
 static void a_bin_holds_its_own_directions(void **state)
 {
     (void)state;
@@ -171,12 +182,12 @@ static void a_bin_holds_its_own_directions(void **state)
     struct subject s = survey("roughconductor:alpha=0.02", &b, 60, 130);
     const struct partition *p = s.survey.partition;
     for (size_t k = 0; k < partition_bins(p); k++) {
-        assert_int_equal(partition_bin(p, patch_centre(partition_patch(p, k))),
-                         k);
-        assert_true(partition_coarse(p, k) < partition_coarse_bins(p));
+        assert_int_equal(bin_of(p, patch_centre(partition_patch(p, k))), k);
+        for (int by = PARTITION_THETA; by <= PARTITION_COARSE; by++)
+            assert_true(partition_group(p, (enum partition_grouping)by, k) <
+                        partition_groups(p, (enum partition_grouping)by));
     }
-    assert_int_equal(partition_bin(p, (struct vec3){ NAN, 0, 1 }),
-                     partition_bins(p));
+    assert_int_equal(bin_of(p, (struct vec3){ NAN, 0, 1 }), partition_bins(p));
     subject_clear(&s);
     bsdf_free(b);
 }

@@ -66,10 +66,10 @@ static void run(const struct subject *s, struct verdict *v)
             verdict_add(v, "%s%s is claimed, but never drawn",
                         v->note[0] ? "; " : "", kind[k].name);
         }
-    if (s->claims.lobes == 0)
+    if (s->claims.lobes == 0) {
+        v->applies = false;
         verdict_note(v, "no lobe is claimed");
-    v->passed = s->claims.lobes != 0;
-    if (v->value == 0 && v->passed)
+    } else if (v->value == 0)
         verdict_note(v, "all that are claimed carry energy");
 }
 

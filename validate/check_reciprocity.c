@@ -163,6 +163,8 @@ static void run(const struct subject *s, struct verdict *v)
     r->n = 0;
     directions(s, r);
     pairs(s, v, r);
+    if (v->value == 0 && !v->note[0])
+        verdict_note(v, "the same in %zu pairs", r->n);
     free(r);
     verdict_found(v, "an f wrong one way by %.1g %%, in one pair of %.2g",
                   100 * v->limit, DRAWS / log(100));

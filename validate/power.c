@@ -46,6 +46,7 @@ double power_normal(double level)
 
 double power_poisson(double mean, double level)
 {
+    mean = fmax(mean, 1e-12); /* GSL has none of 0 */
     unsigned k = (unsigned)mean;
     while (k < 1000000 && gsl_cdf_poisson_Q(k, mean) > level / 2)
         k++;
