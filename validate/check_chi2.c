@@ -97,7 +97,7 @@ static size_t others(const struct survey *v, struct cell *cell)
 
 static void chi_square_part(struct verdict *v, const char *name,
                             const struct outcome *o, const struct survey *s,
-                            const char *effect)
+                            const char *before)
 {
     verdict_part(v, (struct verdict_part){
                         .name = name,
@@ -107,13 +107,14 @@ static void chi_square_part(struct verdict *v, const char *name,
                         .degrees = o->degrees,
                         /* The sum of N m d^2 over cells of mass m. */
                         .scale = (double)s->samples * s->total.value,
-                        .effect = effect,
+                        .before = before,
+                        .after = "%",
                     });
 }
 
 /* A pool of few; the number u makes the p-value uniform, for calibration. */
 static void pool_part(struct verdict *v, const char *name, struct cell c,
-                      const struct survey *s, double u, const char *effect)
+                      const struct survey *s, double u, const char *after)
 {
     const double n = (double)s->samples;
     const bool some = c.share.value * n > 0 || c.count > 0;
@@ -127,7 +128,8 @@ static void pool_part(struct verdict *v, const char *name, struct cell c,
                         .kind = PART_POISSON,
                         .mean = (c.share.value + c.share.error) * n,
                         .scale = n,
-                        .effect = effect,
+                        .before = after ? "" : NULL,
+                        .after = after,
                     });
 }
 
@@ -186,9 +188,9 @@ static void run(const struct subject *s, struct verdict *v)
     chi_square_part(v, "fine", &f, survey, NULL);
     chi_square_part(v, "theta", &theta, survey, NULL);
     chi_square_part(v, "phi", &phi, survey, NULL);
-    chi_square_part(v, "coarse", &c, survey, "the pdf, from part to part,");
+    chi_square_part(v, "coarse", &c, survey, "the pdf wrong here and there by");
     pool_part(v, "empty", f.pool[0], survey, u.x,
-              "where nearly none should be, samples");
+              "% of the samples where nearly none should be");
     /* The groups' pools are the fine ones once more. */
     pool_part(v, "sparse", f.pool[1], survey, u.y, NULL);
     bin_part(v, fine, cells, f.worst, survey);

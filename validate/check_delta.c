@@ -78,8 +78,9 @@ static bool delta_judge(const struct subject *s, const struct delta *d,
                 rare ? pvalue_binomial_uniform(d->count, n, d->pdf, u) : NAN,
             .kind = rare ? PART_NORMAL : PART_OTHER,
             .scale = d->pdf / spread,
-            .effect = refracted ? "the probability of transmission"
-                                : "the probability of reflection",
+            .before = refracted ? "the probability of transmission wrong by"
+                                : "the probability of reflection wrong by",
+            .after = "%",
         });
     return true;
 }

@@ -46,7 +46,8 @@ static void run(const struct subject *s, struct verdict *v)
             .kind = known ? PART_NORMAL : PART_POISSON,
             .mean = q.error * n,
             .scale = known ? 1 / spread : n,
-            .effect = "the pdf, as a whole,",
+            .before = "the pdf wrong as a whole by",
+            .after = "%",
         });
     verdict_combine(v);
     verdict_note(v, "integral %.9f +- %.1e, refused share %.6f, sum %.6f",

@@ -21,7 +21,7 @@
 static const double hits_least = 1000;
 
 static void part(struct verdict *v, const char *name, struct mean m,
-                 struct estimate truth, const char *effect)
+                 struct estimate truth, const char *before)
 {
     const double spread = sqrt(m.variance / (double)m.n);
     verdict_part(v, (struct verdict_part){
@@ -30,7 +30,9 @@ static void part(struct verdict *v, const char *name, struct mean m,
                         .uniform = pvalue_mean_normal(m, truth),
                         .kind = spread > 0 ? PART_NORMAL : PART_OTHER,
                         .scale = truth.value / spread,
-                        .effect = effect,
+                        .error = truth.error / truth.value,
+                        .before = before,
+                        .after = "%",
                     });
 }
 
@@ -53,7 +55,7 @@ static void run(const struct subject *s, struct verdict *v)
         capped.value -= taken / 2;
         capped.error += taken / 2;
         part(v, "weights", e->weight[b], capped,
-             b == 0 ? "weights, on average," : NULL);
+             b == 0 ? "weights wrong on average by" : NULL);
         verdict_add(v, "%s%.6g", b ? "/" : " ", e->weight[b].value);
         hits = fmax(hits, e->hits[b]);
     }

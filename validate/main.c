@@ -3,6 +3,7 @@
 #include <gsl/gsl_errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "bsdf/cli.h"
@@ -17,6 +18,8 @@ enum {
     OPT_SIGNIFICANCE,
     OPT_WO,
     OPT_THREADS,
+    OPT_ESCALATIONS,
+    OPT_SKIP,
     OPT_NM,
     OPT_RGB,
     OPT_IOR_PATH,
@@ -64,6 +67,12 @@ static const struct argp_option options[] = {
       "chance that a run of sound "
       "models fails; 1e-6",
       0 },
+    { "escalations", OPT_ESCALATIONS, "N", 0,
+      "how often a doubtful result may ask for four times the samples, 0 to 4; "
+      "2",
+      0 },
+    { "skip", OPT_SKIP, "CHECK", 0,
+      "leave a check out, may be repeated; --list names them", 0 },
     { "threads", OPT_THREADS, "N", 0,
       "as many as there are, if not given; "
       "the verdicts do not depend on it",
@@ -81,6 +90,19 @@ static const struct argp_option options[] = {
     { "list", OPT_LIST, 0, 0, "name the checks and stop", 0 },
     { 0 },
 };
+
+static bool skip(struct plan *plan, const char *name, struct err *err)
+{
+    const int index = checks_find(name);
+    const char *names[65] = { NULL };
+    if (index >= 0) {
+        plan->skip |= (uint64_t)1 << index;
+        return true;
+    }
+    for (int i = 0; checks[i] && i < 64; i++)
+        names[i] = checks[i]->name;
+    return err_unknown(err, "check", name, names);
+}
 
 static error_t option(int key, char *arg, struct argp_state *state)
 {
@@ -111,6 +133,13 @@ static error_t option(int key, char *arg, struct argp_state *state)
     case OPT_SIGNIFICANCE:
         ok = cli_number(&r->plan.significance, "--significance", arg, 1e-100,
                         0.5, &err);
+        break;
+    case OPT_ESCALATIONS:
+        ok = cli_count(&n, "--escalations", arg, 0, 4, &err);
+        r->plan.escalations = ok ? (int)n : 0;
+        break;
+    case OPT_SKIP:
+        ok = skip(&r->plan, arg, &err);
         break;
     case OPT_THREADS:
         ok = cli_count(&n, "--threads", arg, 1, 1024, &err);
@@ -154,11 +183,24 @@ static error_t option(int key, char *arg, struct argp_state *state)
     return 0;
 }
 
+/* Seconds since the first call. */
+static double elapsed(void)
+{
+    static double first = -1;
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    const double now = (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    first = first < 0 ? now : first;
+    return now - first;
+}
+
 static void progress(void *context, size_t done, size_t of)
 {
     (void)context;
-    fprintf(stderr, "\r%zu of %zu directions%s", done, of,
-            done == of ? "\r\033[K" : "");
+    const double left = elapsed() * (double)(of - done) / (double)done;
+    fprintf(stderr, "\r%zu of %zu directions, %.0f s left\033[K%s", done, of,
+            left, done == of ? "\r\033[K" : "");
+    fflush(stderr);
 }
 
 int main(int argc, char **argv)
@@ -172,6 +214,7 @@ int main(int argc, char **argv)
     r.plan.samples = 0;
     r.bands = bands_default;
     gsl_set_error_handler_off();
+    (void)elapsed();
     argp_err_exit_status = EXIT_REQUEST;
     argp_parse(&(struct argp){ options, option, "SPEC...", about, 0, 0, 0 },
                argc, argv, 0, NULL, &r);

@@ -77,12 +77,13 @@ void verdict_effect(struct verdict *v, double level)
 {
     for (int i = 0; i < v->parts; i++) {
         const struct verdict_part *part = &v->part[i];
-        const double d = part->effect ? smallest(part, level / v->parts) : NAN;
-        char effect[96];
+        const double d =
+            part->before ? smallest(part, level / v->parts) + part->error : NAN;
         if (!(d < 1)) /* nor where it is not a number */
             continue;
-        snprintf(effect, sizeof effect, "%s wrong by %.2g %%", part->effect,
-                 100 * d);
-        verdict_found(v, "%s", effect);
+        if (!v->effect[0])
+            v->effect_size = d;
+        verdict_found(v, "%s%s%.2g %s", part->before,
+                      part->before[0] ? " " : "", 100 * d, part->after);
     }
 }

@@ -30,8 +30,9 @@ struct verdict_part {
     } kind;
     long degrees;
     double mean, scale;
-    const char *effect; /* what would be wrong by d, "the pdf, over half of
-                           the lobe,"; NULL: not stated */
+    double error;       /* of what the statistic is held against, relative */
+    const char *before; /* "the pdf wrong by" d "%": what d says, or NULL: it */
+    const char *after;  /* is not said */
 };
 
 enum { VERDICT_PARTS_MAX = 12 };
@@ -54,7 +55,8 @@ struct verdict {
     bool has_wi;
     struct vec3 wo, wi;  /* worst directions; wi only where has_wi */
     char note[256];      /* the numbers behind it, one line */
-    char effect[128];    /* of one that passed: the smallest mistake that it
+    double effect_size;  /* of the first in effect, relative; or 0 */
+    char effect[192];    /* of one that passed: the smallest mistake that it
                             would have found with 99 % power; or "" */
     char diagnosis[256]; /* of one that failed: what is probably wrong; or "" */
 
