@@ -31,6 +31,11 @@ static inline struct vec3 vec3_add(struct vec3 a, struct vec3 b)
     return (struct vec3){ a.x + b.x, a.y + b.y, a.z + b.z };
 }
 
+static inline struct vec3 vec3_minus(struct vec3 a, struct vec3 b)
+{
+    return (struct vec3){ a.x - b.x, a.y - b.y, a.z - b.z };
+}
+
 static inline struct vec3 vec3_scale(double s, struct vec3 a)
 {
     return (struct vec3){ s * a.x, s * a.y, s * a.z };

@@ -54,7 +54,7 @@ static bool delta_judge(const struct subject *s, const struct delta *d,
     const double e = 16 * 0x1p-52;
     const double close =
         1e-14 + (refracted ? fmin(e / fabs(right.z), sqrt(e)) : 0);
-    const double off = vec3_length(vec3_add(d->wi, vec3_scale(-1, right)));
+    const double off = vec3_length(vec3_minus(d->wi, right));
     if (!(lobes &
           (refracted ? BSDF_DELTA_TRANSMISSION : BSDF_DELTA_REFLECTION)))
         return fault(v, d, "a delta direction on a side without one", 1);

@@ -84,8 +84,7 @@ static bool delta_back(const struct subject *s, const struct delta *d,
     for (uint64_t at = 0; at < BATCHES * BATCH; at += BATCH) {
         subject_draw(&other, rng, at, BATCH, sample);
         for (size_t i = 0; i < BATCH; i++) {
-            const struct vec3 off =
-                vec3_add(sample[i].wi, vec3_scale(-1, s->wo));
+            const struct vec3 off = vec3_minus(sample[i].wi, s->wo);
             *back = sample[i];
             if (back->delta && back->pdf > 0 && vec3_length(off) < 1e-6)
                 return true;

@@ -25,7 +25,7 @@ static bool bad(const struct subject *s, const struct bsdf_sample *a)
 
 static double difference(const struct delta *d, const struct bsdf_sample *a)
 {
-    const struct vec3 off = vec3_add(a->wi, vec3_scale(-1, d->wi));
+    const struct vec3 off = vec3_minus(a->wi, d->wi);
     double sum = vec3_length(off) + fabs(a->pdf - d->pdf);
     for (int b = 0; b < BANDS_MAX; b++)
         sum += fabs(a->weight.band[b] - d->weight.band[b]);
@@ -37,7 +37,7 @@ static void delta_count(struct survey *v, const struct bsdf_sample *a)
 {
     for (int k = 0; k < v->deltas; k++) {
         struct delta *d = &v->delta[k];
-        if (vec3_length(vec3_add(a->wi, vec3_scale(-1, d->wi))) < 1e-6) {
+        if (vec3_length(vec3_minus(a->wi, d->wi)) < 1e-6) {
             d->count++;
             const double off = difference(d, a);
             if (!(off <= d->spread)) /* a NaN stays */
