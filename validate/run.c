@@ -4,6 +4,7 @@
 #include <omp.h>
 #include <stdlib.h>
 
+#include "validate/diagnosis.h"
 #include "validate/pvalue.h"
 
 static int by_p(const void *a, const void *b)
@@ -178,6 +179,33 @@ static bool run_stages(struct run *run, run_progress *progress, void *context,
     return ok;
 }
 
+/* Looks at each result with a failure once more, to find out why. */
+static bool diagnoses(struct run *run, struct err *err)
+{
+    const int threads = run->plan.threads;
+    bool ok = true;
+#pragma omp parallel for schedule(dynamic, 1)                                  \
+    num_threads(threads ? threads : omp_get_max_threads())
+    for (size_t i = 0; i < run->results; i++) {
+        struct result *r = &run->result[i];
+        struct subject subject;
+        struct err why;
+        bool any = false;
+        for (int c = 0; c < checks_count(); c++)
+            any |= r->verdict[c].applies && !r->verdict[c].passed;
+        if (!any)
+            continue;
+        if (subject_init(&subject, r->bsdf, r->wo, &run->plan, &why)) {
+            diagnose(&subject, r->verdict);
+            subject_clear(&subject);
+        } else {
+#pragma omp critical(run_progress)
+            ok = err_set(err, "%s", why.text);
+        }
+    }
+    return ok;
+}
+
 static void count(struct run *run)
 {
     const size_t all = run->results * (size_t)checks_count();
@@ -227,7 +255,7 @@ bool run_checks(struct run *run, const struct plan *plan,
     }
     if (!ok)
         err_set(err, "out of memory");
-    ok = ok && run_stages(run, progress, context, err);
+    ok = ok && run_stages(run, progress, context, err) && diagnoses(run, err);
     if (!ok) {
         run_clear(run);
         return false;
