@@ -43,11 +43,14 @@ static const char *const scope_text[] = { "", ", in reflection",
 static enum clue_scope scope_of(const struct clues *clues)
 {
     double most[2] = { 0, 0 };
+    bool any[2] = { false, false };
     for (size_t i = 0; i < clues->n; i++) {
         const struct clue *c = &clues->clue[i];
         most[c->through] = fmax(most[c->through], fabs(log(c->ratio)));
+        any[c->through] = true;
     }
-    return most[0] < 1e-3 * most[1]   ? SCOPE_TRANSMISSION
+    return !any[0] || !any[1]         ? SCOPE_ALL
+           : most[0] < 1e-3 * most[1] ? SCOPE_TRANSMISSION
            : most[1] < 1e-3 * most[0] ? SCOPE_REFLECTION
                                       : SCOPE_ALL;
 }
