@@ -39,7 +39,7 @@ WARN     := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes \
 LANGUAGE := -std=c17 -D_GNU_SOURCE -fno-math-errno -fopenmp -I. \
             -DBSDF_DATA_DIR='"$(CURDIR)/data"'
 COMPILE   = $(CC) $(LANGUAGE) $(FLAGS) $(WARN) $(CPPFLAGS) $(CFLAGS)
-LIBS     := -lgsl -lgslcblas -lyaml -ljansson -lm
+LIBS     := -lgsl -lgslcblas -lyaml -ljansson -ldl -lm
 
 # `make V=1` shows the commands.
 SAY := @printf '  %-5s %s\n'
@@ -64,25 +64,30 @@ libof     = $(B)/lib$(1).a
 LIBRARIES := $(foreach d,integrator plots validate bsdf,\
                $(if $(filter $(d),$(FOLDERS)),$(call libof,$(d))))
 
-PROGRAM_bsdf       := bsdf-info
-PROGRAM_validate   := bsdf-validate
-PROGRAM_plots      := bsdf-plot
-PROGRAM_integrator := bsdf-render
-MAINS     := $(filter %/main.c,$(SOURCES))
-PROGRAMS  := $(foreach m,$(MAINS),$(B)/bin/$(PROGRAM_$(m:/main.c=)))
+# The programs, by the file with their main().
+PROGRAM_bsdf/main       := bsdf-info
+PROGRAM_validate/main   := bsdf-validate
+PROGRAM_validate/host   := bsdf-plugin-host
+PROGRAM_plots/main      := bsdf-plot
+PROGRAM_integrator/main := bsdf-render
+MAINS     := $(foreach s,$(SOURCES),$(if $(PROGRAM_$(s:.c=)),$(s)))
+PROGRAMS  := $(foreach m,$(MAINS),$(B)/bin/$(PROGRAM_$(m:.c=)))
 
 .PHONY: all
 all: tools-found $(PROGRAMS) ## build the programs into build/bin/ (the default)
 
 define library
-$(call libof,$(1)): $(call objects,$(filter-out $(1)/main.c,$(filter $(1)/%,$(SOURCES))))
+$(call libof,$(1)): $(call objects,$(filter-out $(MAINS),$(filter $(1)/%,$(SOURCES))))
 	$$(SAY) AR $$@
 	$$(Q)rm -f $$@ && ar rcs $$@ $$^
-$(B)/bin/$(PROGRAM_$(1)): $(B)/obj/$(1)/main.o $(LIBRARIES)
+endef
+define program
+$(B)/bin/$(PROGRAM_$(1:.c=)): $(call objects,$(1)) $(LIBRARIES)
 	@mkdir -p $$(@D)
 	$$(SAY) LINK $$@
 	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(LIBS)
 endef
+$(foreach m,$(MAINS),$(eval $(call program,$(m))))
 $(foreach d,$(FOLDERS),$(eval $(call library,$(d))))
 
 $(B)/obj/%.o: %.c Makefile
@@ -248,12 +253,12 @@ $(STAGE)/libbsdf.pc: bsdf/libbsdf.pc.in bsdf/cli.h Makefile $(STAGE)/prefix
 	$(Q)sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|' $< >$@
 
 define staged
-$(STAGE)/$(PROGRAM_$(1)): $(B)/obj/$(1)/main.o \
+$(STAGE)/$(PROGRAM_$(1:.c=)): $(call objects,$(1)) \
     $(LIBRARIES:$(call libof,bsdf)=$(STAGE)/libbsdf.a)
 	$$(SAY) LINK $$@
 	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(LIBS)
 endef
-$(foreach m,$(MAINS),$(eval $(call staged,$(m:/main.c=))))
+$(foreach m,$(MAINS),$(eval $(call staged,$(m))))
 
 # -- tests --------------------------------------------------------------------
 
