@@ -203,7 +203,7 @@ STAGE   := $(B)/install
 VERSION  = $(shell sed -n 's/^\#define BSDF_VERSION "\(.*\)"/\1/p' bsdf/cli.h)
 
 # bsdf.h, and what else a renderer may want, with all that they include.
-PUBLIC  := $(patsubst %,bsdf/%.h,bands bsdf cie colour err fresnel ior ndf rng vec)
+PUBLIC  := $(patsubst %,bsdf/%.h,bands bsdf cie colour err fresnel ior ndf plugin rng vec)
 TABLES  := $(shell find data -type f ! -name '.*')
 STAGED  := $(PROGRAMS:$(B)/bin/%=$(STAGE)/%) $(STAGE)/libbsdf.a $(STAGE)/libbsdf.pc
 # from=to, the latter below PREFIX
@@ -211,6 +211,7 @@ INSTALLED := $(foreach f,$(PROGRAMS:$(B)/bin/%=%),$(STAGE)/$(f)=bin/$(f)) \
              $(STAGE)/libbsdf.a=lib/libbsdf.a \
              $(STAGE)/libbsdf.pc=lib/pkgconfig/libbsdf.pc \
              $(foreach f,$(PUBLIC),$(f)=include/$(f)) \
+             validate/adapters/course.hpp=include/bsdf/course.hpp \
              $(foreach f,$(TABLES),$(f)=share/bsdf/$(f))
 
 # One word that starts with a slash.
@@ -336,6 +337,8 @@ golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)
 # -- order --------------------------------------------------------------------
 
 C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(BENCH) $(HELPERS)
+# What other programs include or compile by themselves, and so not linted here.
+ALONE   = $(wildcard validate/adapters/*.hpp tests/plugins/*)
 
 # Off where it is wrong about C: widths of products that are small, arrays of
 # pointers, OpenMP's clauses; or a matter of taste.
@@ -351,11 +354,11 @@ TIDY := bugprone-*,clang-analyzer-*,$\
 
 .PHONY: format check-format check-layers lint clean help
 format: ## lay the sources out
-	clang-format -i $(C_FILES)
+	clang-format -i $(C_FILES) $(ALONE)
 
 check-format: ## fail where `make format` would change something
 	@$(call install_tool,clang-format,clang-format)
-	clang-format --dry-run --Werror $(C_FILES)
+	clang-format --dry-run --Werror $(C_FILES) $(ALONE)
 
 check-layers: ## fail where an include goes against the order of the folders
 	@sh tests/layers.sh
