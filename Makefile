@@ -338,7 +338,7 @@ golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)
 
 C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(BENCH) $(HELPERS)
 # What other programs include or compile by themselves, and so not linted here.
-ALONE   = $(wildcard validate/adapters/*.hpp tests/plugins/*)
+ALONE   = $(wildcard validate/adapters/*.hpp tests/plugins/*.c tests/plugins/*.cpp)
 
 # Off where it is wrong about C: widths of products that are small, arrays of
 # pointers, OpenMP's clauses; or a matter of taste.

@@ -251,8 +251,9 @@ enum child_said child_ask(struct child *c, const void *said, size_t n,
     if (!room_for(c, 1))
         return CHILD_MEMORY;
     c->reply[0] = '\0';
-    if (poll(fds, 1, 0) > 0)
+    if (c->asked && poll(fds, 1, 0) > 0)
         return fds[0].revents & POLLIN ? CHILD_SPOKE : CHILD_GONE;
+    c->asked = true;
     for (bool done = false; !done || n > 0;) {
         if (n > 0) {
             const ssize_t wrote = write_quietly(c->to, at, n);

@@ -18,6 +18,7 @@
 struct child {
     pid_t pid, keeper;
     int to, from, lifeline; /* our ends */
+    bool asked;             /* once, at least */
     char *reply;            /* what it said last, with a NUL behind */
     size_t replied, room;
 };
@@ -45,7 +46,8 @@ enum child_said {
     CHILD_GONE,  /* it closed its input or output before */
     CHILD_LATE,  /* the time was up before */
     CHILD_MUCH,  /* more than most bytes, and not whole */
-    CHILD_SPOKE, /* it had said something before it was asked; not asked */
+    CHILD_SPOKE, /* it had said something before it was asked, if not for the
+                    first time; not asked */
     CHILD_MEMORY,
 };
 

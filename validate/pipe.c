@@ -258,7 +258,9 @@ static bool text_read(const struct request *r, const struct child *c,
         at = stop + 1;
     }
     return at == c->reply + c->replied ||
-           err_set(err, "%zu bytes behind the last line of the answer",
+           err_set(err,
+                   "%zu bytes behind the last line of the answer that "
+                   "nobody asked for",
                    (size_t)(c->reply + c->replied - at));
 }
 
