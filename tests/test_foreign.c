@@ -351,7 +351,7 @@ static void each_misbehaviour_is_a_verdict(void **state)
           "in place of" },
         { "'pipe:read a; read b; read c; "
           "printf \"bsdf 1\\nlobes diffuse_reflection\\n\\n\"; exec cat'",
-          "more than was asked for" },
+          "bytes that were asked for" },
         { "'pipe:read a; read b; read c; "
           "printf \"bsdf 1\\nlobes diffuse_reflection\\n\\n\"; "
           "exec head -c 3'",

@@ -220,7 +220,8 @@ static bool room_for(struct child *c, size_t n)
     return true;
 }
 
-/* What has come, but one byte more than most at most. */
+/* What has come, up to one byte more than most: a reply that is whole may have
+ * bytes behind it. */
 static enum child_said hear(struct child *c, size_t most, child_whole *whole,
                             void *context, bool *done)
 {
@@ -237,7 +238,7 @@ static enum child_said hear(struct child *c, size_t most, child_whole *whole,
     c->replied += (size_t)got;
     c->reply[c->replied] = '\0';
     *done = whole(context, c->reply, c->replied);
-    return c->replied > most ? CHILD_MUCH : CHILD_WHOLE;
+    return c->replied > most && !*done ? CHILD_MUCH : CHILD_WHOLE;
 }
 
 enum child_said child_ask(struct child *c, const void *said, size_t n,

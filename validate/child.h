@@ -51,8 +51,9 @@ enum child_said {
     CHILD_MEMORY,
 };
 
-/** Tells the child n bytes and takes its reply, at most `most` bytes, into
- * c->reply; both at once, so that neither waits for the other. */
+/** Tells the child n bytes and takes its reply into c->reply, `most` bytes and
+ * one at most, which may be more than the whole one; both at once, so that
+ * neither waits for the other. */
 enum child_said child_ask(struct child *c, const void *said, size_t n,
                           size_t most, double seconds, child_whole *whole,
                           void *context);

@@ -75,7 +75,7 @@ static void end_of(struct child *c, enum child_said said, double seconds,
         err_set(what, "no answer within %g s", seconds);
         break;
     case CHILD_MUCH:
-        err_set(what, "more than was asked for");
+        err_set(what, "more than any answer could be");
         break;
     case CHILD_SPOKE:
         err_set(what, "bytes on its standard output that nobody asked for");
@@ -225,6 +225,9 @@ static bool binary_read(const struct request *r, const struct child *c,
                        "of (%u, %zu), as text \"%s\"",
                        h.op, h.n, (unsigned)r->op, r->n, said);
     }
+    if (c->replied > binary_size(r))
+        return err_set(err, "more than the %zu bytes that were asked for",
+                       binary_size(r));
     memcpy(answer, c->reply + sizeof h, binary_size(r) - sizeof h);
     return true;
 }
