@@ -350,7 +350,8 @@ static void each_misbehaviour_is_a_verdict(void **state)
           "exec cat $T/diffuse.awk'",
           "in place of" },
         { "'pipe:read a; read b; read c; "
-          "printf \"bsdf 1\\nlobes diffuse_reflection\\n\\n\"; exec cat'",
+          "printf \"bsdf 1\\nlobes diffuse_reflection\\n\\n\"; exec tee "
+          "/dev/stderr 2>&1'",
           "bytes that were asked for" },
         { "'pipe:read a; read b; read c; "
           "printf \"bsdf 1\\nlobes diffuse_reflection\\n\\n\"; "
