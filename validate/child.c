@@ -174,10 +174,15 @@ void child_bury(struct child *c, struct err *how)
     child_stop(c);
 }
 
+void child_hush(struct child *c)
+{
+    shut(&c->to);
+}
+
 void child_dismiss(struct child *c)
 {
     siginfo_t info;
-    shut(&c->to);
+    child_hush(c);
     (void)ended(c->pid, 1, &info);
     child_stop(c);
 }

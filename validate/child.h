@@ -34,7 +34,10 @@ void child_stop(struct child *c);
  * 11 (Segmentation fault)", or that it did not. */
 void child_bury(struct child *c, struct err *how);
 
-/** The same with time for it to leave: its input ends first. */
+/** Ends its input, upon which it should leave by itself. */
+void child_hush(struct child *c);
+
+/** Stops a child with time for it to leave: its input ends first. */
 void child_dismiss(struct child *c);
 
 /** Says whether a reply is whole.  It is asked whenever more has come, with all

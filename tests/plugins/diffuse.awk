@@ -1,6 +1,7 @@
 # diffuse.awk - a matt surface that speaks the protocol's text form
 #
-# fault=short, long, words or more makes what it answers to eval no answer.
+# fault=short, long, words or more makes what it answers to eval no answer, half
+# what it answers to sample.
 BEGIN { pi = 3.14159265358979323846 }
 $1 == "bands" { bands = $2 }
 NF == 0 {
@@ -32,7 +33,7 @@ n > 0 && NF == 6 {
         }
         for (b = 0; b < bands; b++)
             line = line ($3 > 0 ? " 0.5" : " 0")
-        print line " 0"
+        print line (fault == "half" ? " 0.5" : " 0")
     }
     if (--n == 0)
         fflush()
