@@ -193,8 +193,10 @@ static ssize_t write_quietly(int fd, const void *data, size_t n)
     sigset_t pipe, before, pending;
     sigemptyset(&pipe);
     sigaddset(&pipe, SIGPIPE);
-    sigpending(&pending);
+    sigemptyset(&pending);
     pthread_sigmask(SIG_BLOCK, &pipe, &before);
+    if (sigismember(&before, SIGPIPE)) /* only then can one be waiting */
+        sigpending(&pending);
     const ssize_t written = write(fd, data, n);
     const int bad = errno;
     if (written < 0 && bad == EPIPE && !sigismember(&pending, SIGPIPE))

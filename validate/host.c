@@ -278,9 +278,12 @@ static bool serve(const struct streams *s, int bands)
     const struct bsdf_plugin *p = model.plugin;
     const size_t most = sizeof(double) * PROTOCOL_RECORDS;
     double *in = malloc(PROTOCOL_NUMBERS * most);
-    double *out = malloc((5 + BANDS_MAX) * most);
+    /* The header lies before the numbers, so that one write takes both. */
+    double *reply = malloc(sizeof(double) + (5 + BANDS_MAX) * most);
+    double *const out = reply + 1;
     struct protocol_header h;
-    bool ok = in && out;
+    _Static_assert(sizeof h == sizeof *reply, "the header has 8 bytes");
+    bool ok = in && reply;
     while (ok && take(s, &h, sizeof h)) {
         ok = h.op >= PROTOCOL_EVAL && h.op <= PROTOCOL_SAMPLE && h.n > 0 &&
              h.n <= PROTOCOL_RECORDS &&
@@ -296,10 +299,11 @@ static bool serve(const struct streams *s, int bands)
             p->pdf(model.state, bands, h.n, in, out);
         else
             p->sample(model.state, bands, h.n, in, out);
-        ok = give(s, &h, sizeof h) && give(s, out, size);
+        memcpy(reply, &h, sizeof h);
+        ok = give(s, reply, sizeof h + size);
     }
     free(in);
-    free(out);
+    free(reply);
     return ok;
 }
 
