@@ -288,10 +288,9 @@ static bool settings_read(struct bsdf *b, const char *settings, struct err *err)
     return ok && (!type->init || type->init(b->state, &b->bands, err));
 }
 
-/* spec is what to remember, settings a part of it. */
-static struct bsdf *make(const struct bsdf_type *type, const char *spec,
-                         const char *settings, const struct bands *bands,
-                         struct err *err)
+/* With a state of zeros; NULL when out of memory. */
+static struct bsdf *blank(const struct bsdf_type *type, const char *spec,
+                          const struct bands *bands, struct err *err)
 {
     if (err)
         err->text[0] = '\0';
@@ -302,16 +301,36 @@ static struct bsdf *make(const struct bsdf_type *type, const char *spec,
         b->bands = *bands;
         b->spec = strdup(spec);
         b->state = calloc(1, type->size ? type->size : 1);
+        if (b->spec && b->state)
+            return b;
+        free(b->spec);
+        free(b->state);
+        free(b);
     }
-    if (!b || !b->spec || !b->state) {
-        err_set(err, "out of memory");
-        goto fail;
-    }
-    if (settings_read(b, settings, err))
+    err_set(err, "out of memory");
+    return NULL;
+}
+
+/* spec is what to remember, settings a part of it. */
+static struct bsdf *make(const struct bsdf_type *type, const char *spec,
+                         const char *settings, const struct bands *bands,
+                         struct err *err)
+{
+    struct bsdf *b = blank(type, spec, bands, err);
+    if (!b || settings_read(b, settings, err))
         return b;
-fail:
     bsdf_free(b);
     return NULL;
+}
+
+struct bsdf *bsdf_new_around(const struct bsdf_type *type, const char *spec,
+                             const void *state, const struct bands *bands,
+                             struct err *err)
+{
+    struct bsdf *b = blank(type, spec, bands, err);
+    if (b)
+        memcpy(b->state, state, type->size);
+    return b;
 }
 
 struct bsdf *bsdf_new(const char *spec, const struct bands *bands,

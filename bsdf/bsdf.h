@@ -129,6 +129,13 @@ struct bsdf *bsdf_new(const char *spec, const struct bands *bands,
 struct bsdf *bsdf_new_of(const struct bsdf_type *type, const char *settings,
                          const struct bands *bands, struct err *err);
 
+/** The same for a state that is made already: a copy of its type->size bytes,
+ * which bsdf_free clears.  The type has no settings; the spec is what bsdf_spec
+ * gives.  NULL, and the state stays the caller's, when out of memory. */
+struct bsdf *bsdf_new_around(const struct bsdf_type *type, const char *spec,
+                             const void *state, const struct bands *bands,
+                             struct err *err);
+
 void bsdf_free(struct bsdf *b); /* NULL is fine */
 
 const struct bsdf_type *bsdf_type(const struct bsdf *b);

@@ -8,6 +8,7 @@
 
 #include "bsdf/cli.h"
 #include "plots/kinds.h"
+#include "validate/foreign.h"
 
 enum {
     OPT_NM = 1,
@@ -173,7 +174,7 @@ static bool draw_of(const struct plot *plot, struct request *r,
         r->plot.pages = r->arg[1];
         return plot->run(&r->plot, made, err);
     }
-    struct bsdf *b = bsdf_new(r->arg[1], &r->plot.bands, err);
+    struct bsdf *b = foreign_new(r->arg[1], &r->plot.bands, err);
     if (!b)
         return false;
     warn(err);

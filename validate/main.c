@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include "bsdf/cli.h"
+#include "validate/foreign.h"
+#include "validate/pipe.h"
 #include "validate/report.h"
 #include "validate/run.h"
 
@@ -20,7 +22,8 @@ enum {
     OPT_NM,
     OPT_RGB,
     OPT_IOR_PATH,
-    OPT_LIST
+    OPT_LIST,
+    OPT_TIME_LIMIT
 };
 enum { WO_MAX = 256, SPECS_MAX = 256 };
 
@@ -42,7 +45,9 @@ const char *argp_program_version = "bsdf-validate " BSDF_VERSION;
 static const char about[] =
     "Says whether scattering models are sound, and why not."
     "\vA SPEC is name or name:key=value,...; `bsdf-info list` names the models "
-    "and their keys.  Exit status: 0 sound, 1 a check failed, 2 the request "
+    "and their keys.  A model of yours is pipe:COMMAND or "
+    "./my.so:key=value,...  Exit status: 0 sound, 1 a check failed, 2 the "
+    "request "
     "was wrong.";
 
 static const struct argp_option options[] = {
@@ -68,6 +73,8 @@ static const struct argp_option options[] = {
       "as many as there are, if not given; "
       "the verdicts do not depend on it",
       0 },
+    { "time-limit", OPT_TIME_LIMIT, "SECONDS", 0,
+      "for each request to a model in another program; 10", 0 },
     { "nm", OPT_NM, "A,B,C", 0, "bands: one to four wavelengths", 0 },
     { "rgb", OPT_RGB, "METHOD", 0,
       "bands: R, G, B by fit (if neither is given), average or fixed:A,B,C",
@@ -87,6 +94,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
     struct request *r = state->input;
     struct err err;
     uint64_t n;
+    double seconds;
     bool ok = true;
     switch (key) {
     case OPT_ALL:
@@ -115,6 +123,11 @@ static error_t option(int key, char *arg, struct argp_state *state)
     case OPT_THREADS:
         ok = cli_count(&n, "--threads", arg, 1, 1024, &err);
         r->plan.threads = ok ? (int)n : 0;
+        break;
+    case OPT_TIME_LIMIT:
+        ok = cli_number(&seconds, "--time-limit", arg, 0.001, 1e6, &err);
+        if (ok)
+            pipe_set_time_limit(seconds);
         break;
     case OPT_NM:
         ok = bands_parse(&r->bands, arg, &err);
@@ -178,7 +191,7 @@ int main(int argc, char **argv)
     if (r.plan.samples == 0) /* not asked for */
         r.plan.samples = r.all ? all_samples : plan_default.samples;
     for (size_t i = 0; i < r.specs; i++) {
-        bsdf[i] = bsdf_new(r.spec[i], &r.bands, &err);
+        bsdf[i] = foreign_new(r.spec[i], &r.bands, &err);
         if (!bsdf[i])
             goto fail;
         if (err.text[0])
