@@ -50,8 +50,9 @@ NUMBERS = 6  # a record
 # Older ones cannot compile fmaximum for x86-64 and end the process.
 LLVM_MIN = 17
 
-# Requests are filled up to one of few sizes, as a kernel is compiled for each.
-SIZE_MIN, SIZE_STEP = 64, 4
+# A row of numbers begins at a multiple of so many bytes: Dr.Jit compiles one
+# kernel for rows that do and another for those that do not.
+ALIGNMENT = 64
 
 LOBES = {  # ours, and the flags of Mitsuba's that are one
     "diffuse_reflection": ("DiffuseReflection",),
@@ -169,10 +170,34 @@ class Model:
         self.double = "double" in variant
         # The largest number below 1 that a sampler gives.
         self.below_one = 1 - (2.0**-53 if self.double else 2.0**-24)
-        ops = (self.eval, self.pdf, self.sample)
-        self.ops = ops if self.scalar else [dr.freeze(f) for f in ops]
+        self.ops = self.eval, self.pdf, self.sample
+        self.point = None
+        if self.scalar:
+            self.point = self.surface()
+        else:
+            self.freeze()
+
+    def freeze(self):
+        """Traces each operation once; what cannot be is traced every time."""
+        import drjit as dr
+        import numpy as np
+        record = np.array([[0.6, 0, 0.8, 0, 0.6, 0.8]], dtype=np.float32)
+        plain, frozen = self.ops, []
+        for op, f in zip((EVAL, PDF, SAMPLE), plain):
+            self.ops = [dr.freeze(f, state_fn=lambda *_: self.bsdf)] * 3
+            try:
+                self.all(op, record)
+                frozen.append(self.ops[0])
+            except RuntimeError:
+                frozen.append(f)
+        self.ops = frozen
 
     def interaction(self, given):
+        si = self.point or self.surface()
+        si.wi = given
+        return si
+
+    def surface(self):
         import drjit as dr
         import mitsuba as mi
         si = dr.zeros(mi.SurfaceInteraction3f)
@@ -184,7 +209,6 @@ class Model:
         if self.wavelengths:
             padded = (self.wavelengths + 4 * self.wavelengths[-1:])[:4]
             si.wavelengths = type(si.wavelengths)(*padded)
-        si.wi = given
         return si
 
     def eval(self, given, asked):
@@ -224,24 +248,42 @@ class Model:
     def all(self, op, record):
         import mitsuba as mi
         import numpy as np
-        size = SIZE_MIN
-        while size < len(record):
-            size *= SIZE_STEP
-        # Filled up with the last record, which is as good as any.
-        column = np.pad(record, ((0, size - len(record)), (0, 0)), mode="edge").T
-        a, b = (mi.Vector3f(np.ascontiguousarray(c)) for c in (column[:3], column[3:]))
-        answer = self.ops[op - 1](a, b)
+        # Filled up with the first record, which is as good as any.
+        rows = aligned(NUMBERS, len(record), record.dtype)
+        rows[:, :len(record)] = record.T
+        rows[:, len(record):] = record[:1].T
+        answer = self.ops[op - 1](mi.Vector3f(rows[:3]), mi.Vector3f(rows[3:]))
         if op != SAMPLE:
-            return answer.numpy().T[:len(record)]
-        return [x.numpy().T[:len(record)] for x in answer]
+            return column(answer, len(record))
+        return [column(x, len(record)) for x in answer]
 
     def each(self, op, record):
         import mitsuba as mi
         import numpy as np
-        answers = [self.ops[op - 1](mi.Vector3f(*r[:3]), mi.Vector3f(*r[3:])) for r in record.tolist()]
-        if op == SAMPLE:
-            return [np.array(part, dtype=np.float64) for part in zip(*answers)]
-        return np.array(answers, dtype=np.float64)
+        f, vector = self.ops[op - 1], mi.Vector3f
+        answers = [f(vector(a, b, c), vector(x, y, z)) for a, b, c, x, y, z in record.tolist()]
+        if op == PDF:
+            return np.array(answers)
+        if op == EVAL:
+            return np.array([list(f) for f in answers])
+        return [np.array(part) for part in zip(*((list(wi), pdf, list(weight), *rest)
+                                                 for wi, pdf, weight, *rest in answers))]
+
+
+def column(values, n):
+    """The first n of Dr.Jit's values; it keeps what is the same in all once."""
+    import numpy as np
+    rows = values.numpy().T
+    return rows[:n] if len(rows) >= n else np.repeat(rows, n, axis=0)
+
+
+def aligned(rows, length, dtype):
+    """An array of at least that length, a multiple of ALIGNMENT bytes."""
+    import numpy as np
+    width = -(-length * dtype.itemsize // ALIGNMENT) * ALIGNMENT
+    memory = np.empty(rows * width + ALIGNMENT, dtype=np.uint8)
+    begin = -memory.ctypes.data % ALIGNMENT
+    return memory[begin:begin + rows * width].view(dtype).reshape(rows, -1)
 
 
 def widened(values, bands):
@@ -273,11 +315,11 @@ def eta_of(model):
         return bs.eta, (bs.wo.z < 0) & dr.any(weight > 0)
 
     u = (np.arange(1024)[:, None] * [0.7548776662, 0.5698402910, 0.8191725134] + 0.5) % 1
-    given = np.array([0.6, 0, 0.8])
+    given = mi.Vector3f(0.6, 0, 0.8)
     if model.scalar:
-        answers = [through(mi.Vector3f(*given), mi.Vector3f(*x)) for x in u]
+        answers = [through(given, mi.Vector3f(*x)) for x in u.tolist()]
     else:
-        eta, is_through = through(mi.Vector3f(*given), mi.Vector3f(np.ascontiguousarray(u.T, dtype=np.float32)))
+        eta, is_through = through(given, mi.Vector3f(np.ascontiguousarray(u.T)))
         answers = np.broadcast(eta.numpy(), is_through.numpy())
     found = {float(eta) for eta, is_through in answers if is_through}
     if len(found) > 1:
