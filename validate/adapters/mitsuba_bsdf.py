@@ -31,9 +31,10 @@ wo asked about, so the two change places here.  In both, f of radiance is meant
 Random numbers.  u.z chooses (sample1), u.x and u.y place (sample2).  They are
 rounded to the variant's precision and kept below 1, as by Mitsuba's samplers.
 
-Refused samples.  Mitsuba returns weight 0 with a pdf and a direction that mean
-nothing.  A sample is refused if its weight is 0 and so is pdf() of its
-direction; what has weight 0 where pdf() is not 0 is passed on as it is.
+Refused samples.  Mitsuba returns weight 0, with a pdf and a direction that mean
+nothing: a reflection that fell below the surface may lie where light is
+transmitted.  So what has weight 0 is refused, unless that is right: in a delta
+lobe, or where pdf() is positive and eval() is 0, as of a black surface.
 """
 
 import argparse
@@ -224,9 +225,9 @@ class Model:
         si = self.interaction(given)
         bs, weight = self.bsdf.sample(self.context, si, u.z, mi.Point2f(u.x, u.y))
         delta = mi.has_flag(bs.sampled_type, mi.BSDFFlags.Delta)
-        density = dr.select(delta, bs.pdf, self.bsdf.pdf(self.context, si, bs.wo))
-        nothing = dr.all(weight == 0) & (density == 0)
-        return bs.wo, bs.pdf, weight, delta, ~nothing if not self.scalar else not nothing
+        value, density = self.bsdf.eval_pdf(self.context, si, bs.wo)
+        black = dr.select(delta, bs.pdf > 0, dr.all(value == 0) & (density > 0))
+        return bs.wo, bs.pdf, weight, delta, black | dr.any(weight != 0)
 
     def answer(self, op, record, bands):
         """The numbers that go back for an array of records."""
@@ -253,9 +254,10 @@ class Model:
         rows[:, :len(record)] = record.T
         rows[:, len(record):] = record[:1].T
         answer = self.ops[op - 1](mi.Vector3f(rows[:3]), mi.Vector3f(rows[3:]))
+        size = rows.shape[1], len(record)
         if op != SAMPLE:
-            return column(answer, len(record))
-        return [column(x, len(record)) for x in answer]
+            return column(answer, *size)
+        return [column(x, *size) for x in answer]
 
     def each(self, op, record):
         import mitsuba as mi
@@ -270,11 +272,12 @@ class Model:
                                                  for wi, pdf, weight, *rest in answers))]
 
 
-def column(values, n):
-    """The first n of Dr.Jit's values; it keeps what is the same in all once."""
+def column(values, asked, n):
+    """The first n of Dr.Jit's values.  A constant may come once, or as often as
+    was asked for when the operation was traced."""
     import numpy as np
     rows = values.numpy().T
-    return rows[:n] if len(rows) >= n else np.repeat(rows, n, axis=0)
+    return rows[:n] if len(rows) == asked else np.repeat(rows[:1], n, axis=0)
 
 
 def aligned(rows, length, dtype):
