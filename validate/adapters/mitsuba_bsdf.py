@@ -34,7 +34,8 @@ rounded to the variant's precision and kept below 1, as by Mitsuba's samplers.
 Refused samples.  Mitsuba returns weight 0, with a pdf and a direction that mean
 nothing: a reflection that fell below the surface may lie where light is
 transmitted.  So what has weight 0 is refused, unless that is right: in a delta
-lobe, or where pdf() is positive and eval() is 0, as of a black surface.
+lobe, or on the side of the lobe it is said to be of, with a positive pdf() and
+an eval() of 0, as of a black surface.
 """
 
 import argparse
@@ -225,8 +226,12 @@ class Model:
         si = self.interaction(given)
         bs, weight = self.bsdf.sample(self.context, si, u.z, mi.Point2f(u.x, u.y))
         delta = mi.has_flag(bs.sampled_type, mi.BSDFFlags.Delta)
-        value, density = self.bsdf.eval_pdf(self.context, si, bs.wo)
-        black = dr.select(delta, bs.pdf > 0, dr.all(value == 0) & (density > 0))
+        same = bs.wo.z * si.wi.z
+        reflected = mi.has_flag(bs.sampled_type, mi.BSDFFlags.Reflection)
+        transmitted = mi.has_flag(bs.sampled_type, mi.BSDFFlags.Transmission)
+        side = (reflected & (same > 0)) | (transmitted & (same < 0))
+        value, density = self.eval(given, bs.wo), self.pdf(given, bs.wo)
+        black = dr.select(delta, bs.pdf > 0, side & dr.all(value == 0) & (density > 0))
         return bs.wo, bs.pdf, weight, delta, black | dr.any(weight != 0)
 
     def answer(self, op, record, bands):
