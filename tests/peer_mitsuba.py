@@ -83,16 +83,19 @@ def facet(a, b, weight):
 
 
 def rational_masking(bsdf, variant, verdict):
-    """Beckmann's G1 is off by more than some 1e-4 toward the given direction."""
-    if bsdf.get("distribution") != "beckmann" or not bsdf.get("sample_visible", True):
+    """Beckmann's G1 is off by more than 1e-4 toward the given direction, and
+    what failed is not off by more than twice that."""
+    if bsdf["type"] not in ("roughconductor", "roughdielectric") or bsdf["distribution"] != "beckmann":
         return False
-    if verdict["check"] not in ("pdf", "chi2", "jacobian", "weights"):
+    if not bsdf.get("sample_visible", True) or verdict["check"] not in ("pdf", "chi2", "jacobian", "weights"):
         return False
     x, y, z = xyz(verdict["wo"])
     a = abs(z) / (bsdf["alpha"] * math.hypot(x, y))
     exact = 2 / (1 + math.erf(a) + math.exp(-a * a) / (a * math.sqrt(math.pi)))
     fit = 1 if a >= 1.6 else (3.535 * a + 2.181 * a * a) / (1 + 2.276 * a + 2.577 * a * a)
-    return abs(fit / exact - 1) > 1e-4
+    off = abs(fit / exact - 1)
+    said = re.search(r"(?:sum|share =) ([0-9.]+)", verdict["note"]) if verdict["check"] in ("pdf", "jacobian") else None
+    return off > 1e-4 and (said is None or abs(float(said.group(1)) - 1) < 2 * off)
 
 
 def lost_sine(bsdf, variant, verdict):
@@ -179,19 +182,21 @@ WHY = {
     grazed_facet: """\
     Fresnel's cos_t is the root of 1 - eta^2 (1 - cos^2), which is near 0 for a facet
     that the light beyond grazes; f is proportional to it.  From the other side it
-    is exact, so the two ways differ.  The same formulas in double, at the pairs that
-    were found, agree to 1e-9, and in float are off by as much as is seen here.
+    is known well, so the two ways differ.  The same formulas in double agree to 1e-9
+    at five such pairs with GGX; in numpy's float they are 0.1 to 5 % apart.  At the
+    two worst, with Beckmann, cos_t^2 is 6e-8 and 3e-8, one rounding of 1.
     Single precision; the values are a small part of the peak's.""",
     unmasked_pdf: """\
     pdf() and eval_pdf() of roughplastic.cpp put cos > 0 into `active`, return early
     where no lane is active, and then `return result` without it, so that only the
     scalar variants give 0 below the surface (the scalar run below is sound).  The
     integral over the sphere exceeds 1, and at the horizon there is 0 / 0.
-    principledthin.cpp returns its pdf likewise.  Theirs.""",
+    principledthin.cpp returns its pdf likewise.  Theirs; harmless to who looks at
+    the value first, as it is 0 there.""",
     corner: """\
     sample_visible_11() of microfacet.h maps u = (0, 1/2) to the disk's rim, y = z = 0:
     rcp(sin y + cos z) is infinite and infinity times 0 is no number.  roughdielectric
-    passes it on in the scalar variant.  Theirs: one number of 2^24 in each dimension.""",
+    passes it on in the scalar variant.  Theirs, at one point of the square.""",
     thin_sides: """\
     principledthin.cpp finds the half vector from the mirrored direction, but
     mac_mic_compatibility() and the masking G are given the one that goes through, so

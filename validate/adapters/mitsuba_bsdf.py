@@ -82,6 +82,14 @@ def claim(text):
     return key, value
 
 
+def place(text):
+    try:
+        u, v = (float(x) for x in text.split(","))
+    except ValueError:
+        raise Refused(f"--uv {text}: expected two numbers, as in 0.5,0.5") from None
+    return u, v
+
+
 def arguments(argv):
     parser = argparse.ArgumentParser(
         description="Any BSDF of Mitsuba 3, as an adapter of bsdf-validate.")
@@ -132,7 +140,7 @@ def bsdf_of_scene(scene, wanted):
         return found[wanted]
     if wanted is None and len(found) == 1:
         return next(iter(found.values()))
-    raise Refused(f"--id {wanted}: expected one of the scene's: {', '.join(found)}")
+    raise Refused(f"--id {wanted or 'is missing'}: expected one of the scene's, {', '.join(found)}")
 
 
 def load(args):
@@ -226,13 +234,17 @@ class Model:
         si = self.interaction(given)
         bs, weight = self.bsdf.sample(self.context, si, u.z, mi.Point2f(u.x, u.y))
         delta = mi.has_flag(bs.sampled_type, mi.BSDFFlags.Delta)
+        # Most are; what follows takes most of the time of a scalar variant.
+        if self.scalar and any(w != 0 for w in weight):
+            return bs.wo, bs.pdf, weight, delta, True
+        there = dr.any(weight != 0)
         same = bs.wo.z * si.wi.z
         reflected = mi.has_flag(bs.sampled_type, mi.BSDFFlags.Reflection)
         transmitted = mi.has_flag(bs.sampled_type, mi.BSDFFlags.Transmission)
         side = (reflected & (same > 0)) | (transmitted & (same < 0))
         value, density = self.eval(given, bs.wo), self.pdf(given, bs.wo)
         black = dr.select(delta, bs.pdf > 0, side & dr.all(value == 0) & (density > 0))
-        return bs.wo, bs.pdf, weight, delta, black | dr.any(weight != 0)
+        return bs.wo, bs.pdf, weight, delta, there | black
 
     def answer(self, op, record, bands):
         """The numbers that go back for an array of records."""
@@ -273,8 +285,8 @@ class Model:
             return np.array(answers)
         if op == EVAL:
             return np.array([list(f) for f in answers])
-        return [np.array(part) for part in zip(*((list(wi), pdf, list(weight), *rest)
-                                                 for wi, pdf, weight, *rest in answers))]
+        rows = np.array([(*wi, pdf, *weight, delta, there) for wi, pdf, weight, delta, there in answers])
+        return rows[:, :3], rows[:, 3], rows[:, 4:-2], rows[:, -2], rows[:, -1]
 
 
 def column(values, asked, n):
@@ -426,9 +438,7 @@ def main(argv):
     args = arguments(argv)
     try:
         bands, wavelengths = bands_asked(stream)
-        uv = [float(x) for x in args.uv.split(",")]
-        if len(uv) != 2:
-            raise Refused(f"--uv {args.uv}: expected two numbers")
+        uv = place(args.uv)
         try:
             import drjit as dr
             import mitsuba as mi
