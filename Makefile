@@ -39,7 +39,7 @@ WARN     := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes \
 LANGUAGE := -std=c17 -D_GNU_SOURCE -fno-math-errno -fopenmp -I. \
             -DBSDF_DATA_DIR='"$(CURDIR)/data"'
 COMPILE   = $(CC) $(LANGUAGE) $(FLAGS) $(WARN) $(CPPFLAGS) $(CFLAGS)
-LIBS     := -lgsl -lgslcblas -lyaml -ljansson -lm
+LIBS     := -lgsl -lgslcblas -lyaml -ljansson -ldl -lm
 
 # `make V=1` shows the commands.
 SAY := @printf '  %-5s %s\n'
@@ -64,25 +64,30 @@ libof     = $(B)/lib$(1).a
 LIBRARIES := $(foreach d,integrator plots validate bsdf,\
                $(if $(filter $(d),$(FOLDERS)),$(call libof,$(d))))
 
-PROGRAM_bsdf       := bsdf-info
-PROGRAM_validate   := bsdf-validate
-PROGRAM_plots      := bsdf-plot
-PROGRAM_integrator := bsdf-render
-MAINS     := $(filter %/main.c,$(SOURCES))
-PROGRAMS  := $(foreach m,$(MAINS),$(B)/bin/$(PROGRAM_$(m:/main.c=)))
+# The programs, by the file with their main().
+PROGRAM_bsdf/main       := bsdf-info
+PROGRAM_validate/main   := bsdf-validate
+PROGRAM_validate/host   := bsdf-plugin-host
+PROGRAM_plots/main      := bsdf-plot
+PROGRAM_integrator/main := bsdf-render
+MAINS     := $(foreach s,$(SOURCES),$(if $(PROGRAM_$(s:.c=)),$(s)))
+PROGRAMS  := $(foreach m,$(MAINS),$(B)/bin/$(PROGRAM_$(m:.c=)))
 
 .PHONY: all
 all: tools-found $(PROGRAMS) ## build the programs into build/bin/ (the default)
 
 define library
-$(call libof,$(1)): $(call objects,$(filter-out $(1)/main.c,$(filter $(1)/%,$(SOURCES))))
+$(call libof,$(1)): $(call objects,$(filter-out $(MAINS),$(filter $(1)/%,$(SOURCES))))
 	$$(SAY) AR $$@
 	$$(Q)rm -f $$@ && ar rcs $$@ $$^
-$(B)/bin/$(PROGRAM_$(1)): $(B)/obj/$(1)/main.o $(LIBRARIES)
+endef
+define program
+$(B)/bin/$(PROGRAM_$(1:.c=)): $(call objects,$(1)) $(LIBRARIES)
 	@mkdir -p $$(@D)
 	$$(SAY) LINK $$@
 	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(LIBS)
 endef
+$(foreach m,$(MAINS),$(eval $(call program,$(m))))
 $(foreach d,$(FOLDERS),$(eval $(call library,$(d))))
 
 $(B)/obj/%.o: %.c Makefile
@@ -198,7 +203,7 @@ STAGE   := $(B)/install
 VERSION  = $(shell sed -n 's/^\#define BSDF_VERSION "\(.*\)"/\1/p' bsdf/cli.h)
 
 # bsdf.h, and what else a renderer may want, with all that they include.
-PUBLIC  := $(patsubst %,bsdf/%.h,bands bsdf cie colour err fresnel ior ndf rng vec)
+PUBLIC  := $(patsubst %,bsdf/%.h,bands bsdf cie colour err fresnel ior ndf plugin rng vec)
 TABLES  := $(shell find data -type f ! -name '.*')
 STAGED  := $(PROGRAMS:$(B)/bin/%=$(STAGE)/%) $(STAGE)/libbsdf.a $(STAGE)/libbsdf.pc
 # from=to, the latter below PREFIX
@@ -206,6 +211,7 @@ INSTALLED := $(foreach f,$(PROGRAMS:$(B)/bin/%=%),$(STAGE)/$(f)=bin/$(f)) \
              $(STAGE)/libbsdf.a=lib/libbsdf.a \
              $(STAGE)/libbsdf.pc=lib/pkgconfig/libbsdf.pc \
              $(foreach f,$(PUBLIC),$(f)=include/$(f)) \
+             validate/adapters/course.hpp=include/bsdf/course.hpp \
              $(foreach f,$(TABLES),$(f)=share/bsdf/$(f))
 
 # One word that starts with a slash.
@@ -248,12 +254,12 @@ $(STAGE)/libbsdf.pc: bsdf/libbsdf.pc.in bsdf/cli.h Makefile $(STAGE)/prefix
 	$(Q)sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|' $< >$@
 
 define staged
-$(STAGE)/$(PROGRAM_$(1)): $(B)/obj/$(1)/main.o \
+$(STAGE)/$(PROGRAM_$(1:.c=)): $(call objects,$(1)) \
     $(LIBRARIES:$(call libof,bsdf)=$(STAGE)/libbsdf.a)
 	$$(SAY) LINK $$@
 	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(LIBS)
 endef
-$(foreach m,$(MAINS),$(eval $(call staged,$(m:/main.c=))))
+$(foreach m,$(MAINS),$(eval $(call staged,$(m))))
 
 # -- tests --------------------------------------------------------------------
 
@@ -349,6 +355,8 @@ peer-mitsuba: all ## validate the BSDFs of Mitsuba 3, and why some fail (Python,
 # -- order --------------------------------------------------------------------
 
 C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(BENCH) $(HELPERS)
+# What other programs include or compile by themselves, and so not linted here.
+ALONE   = $(wildcard validate/adapters/*.hpp tests/plugins/*.c tests/plugins/*.cpp)
 
 # Off where it is wrong about C: widths of products that are small, arrays of
 # pointers, OpenMP's clauses; or a matter of taste.
@@ -364,11 +372,11 @@ TIDY := bugprone-*,clang-analyzer-*,$\
 
 .PHONY: format check-format check-layers lint clean help
 format: ## lay the sources out
-	clang-format -i $(C_FILES)
+	clang-format -i $(C_FILES) $(ALONE)
 
 check-format: ## fail where `make format` would change something
 	@$(call install_tool,clang-format,clang-format)
-	clang-format --dry-run --Werror $(C_FILES)
+	clang-format --dry-run --Werror $(C_FILES) $(ALONE)
 
 check-layers: ## fail where an include goes against the order of the folders
 	@sh tests/layers.sh

@@ -166,6 +166,22 @@ static void warn(const struct err *err)
         fprintf(stderr, "bsdf-plot: warning: %s\n", err->text);
 }
 
+/* False and the first trouble that a model of another program was in, in any
+ * thread that drew. */
+static bool answered(const struct bsdf *b, struct err *err)
+{
+    bool good = true;
+#pragma omp parallel
+    {
+        struct err what;
+        if (bsdf_trouble(b, &what)) {
+#pragma omp critical(plots_answered)
+            good = err_set(err, "%s", what.text);
+        }
+    }
+    return good;
+}
+
 /* Makes the model, if the plot is of one, and draws. */
 static bool draw_of(const struct plot *plot, struct request *r,
                     struct figure_made *made, struct err *err)
@@ -180,7 +196,7 @@ static bool draw_of(const struct plot *plot, struct request *r,
     warn(err);
     err->text[0] = '\0';
     r->plot.bsdf = b;
-    const bool ok = plot->run(&r->plot, made, err);
+    const bool ok = plot->run(&r->plot, made, err) && answered(b, err);
     bsdf_free(b);
     return ok;
 }

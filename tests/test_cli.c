@@ -315,8 +315,9 @@ static void a_report_is_whole_or_not_there(void **state)
         sh("bsdf-validate diffuse --samples 1e3 >/dev/full 2>/dev/null"), 2);
 }
 
-/* The README's tour: the commands of its sh blocks run in an empty folder that
- * has build/bin, and each line of its text blocks is a line they printed. */
+/* The README's tour and what follows on a BSDF of one's own: the commands of
+ * the sh blocks run in a folder that has build/bin and bsdf/ alone, and each
+ * line of the text blocks is a line they printed. */
 static void the_readmes_tour_runs(void **state)
 {
     (void)state;
@@ -333,7 +334,7 @@ static void the_readmes_tour_runs(void **state)
     FILE *into = NULL;
     while (fgets(line, sizeof line, readme)) {
         if (strncmp(line, "## ", 3) == 0)
-            tour = strstr(line, "tour") != NULL;
+            tour = strstr(line, "tour") || strstr(line, "Your own BSDF");
         if (strncmp(line, "```", 3) == 0) {
             into = !tour || into                    ? NULL
                    : strcmp(line, "```sh\n") == 0   ? script
@@ -353,7 +354,8 @@ static void the_readmes_tour_runs(void **state)
     char command[8500];
     snprintf(command, sizeof command,
              "mkdir -p $T/empty/build && ln -s %s $T/empty/build/bin && "
-             "cd $T/empty && sh -e $T/tour.sh >$T/printed 2>&1",
+             "ln -s \"$PWD/bsdf\" $T/empty/bsdf && cd $T/empty && sh -e "
+             "$T/tour.sh >$T/printed 2>&1",
              bin);
     if (sh(command) != 0) {
         sh("tail -n 20 $T/printed");

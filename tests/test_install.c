@@ -99,6 +99,24 @@ static void every_header_stands_alone(void **state)
          "-fsyntax-only -x c - || exit 1; done");
 }
 
+/* Of the installed files alone, by the host that is beside the program. */
+static void a_plugin_needs_one_header(void **state)
+{
+    (void)state;
+    does("echo '#include \"bsdf/plugin.h\"' | cc -std=c99 -pedantic -Wall "
+         "-Werror -I$T/usr/include -fsyntax-only -x c -");
+    does("cc -shared -fPIC -O2 -I$T/usr/include -o $T/glass.so "
+         "tests/plugins/glass.c -lm");
+    does("cd $T && usr/bin/bsdf-validate ./glass.so:eta=1.5 --wo 30,0 "
+         "--samples 1000");
+    assert_has(output, " 0 failed");
+    if (sh("command -v c++") == 0)
+        does("echo '#include \"bsdf/course.hpp\"' | c++ -std=c++11 -pedantic "
+             "-Wall -Werror -I$T/usr/include -fsyntax-only -x c++ -");
+    else
+        print_message("skipped: no C++ compiler here\n");
+}
+
 static const char user[] =
     "#include <stdio.h>\n"
     "#include \"bsdf/bsdf.h\"\n"
@@ -214,6 +232,7 @@ int main(void)
         { "relative prefixes and spaces are refused",
           relative_prefixes_are_refused },
         { "every installed header stands alone", every_header_stands_alone },
+        { "a plugin needs one header", a_plugin_needs_one_header },
         { "pkg-config and a plain cc make a program",
           pkg_config_and_a_plain_cc_make_a_program },
         { "the installed programs work from anywhere",

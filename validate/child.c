@@ -174,10 +174,15 @@ void child_bury(struct child *c, struct err *how)
     child_stop(c);
 }
 
+void child_hush(struct child *c)
+{
+    shut(&c->to);
+}
+
 void child_dismiss(struct child *c)
 {
     siginfo_t info;
-    shut(&c->to);
+    child_hush(c);
     (void)ended(c->pid, 1, &info);
     child_stop(c);
 }
@@ -188,8 +193,10 @@ static ssize_t write_quietly(int fd, const void *data, size_t n)
     sigset_t pipe, before, pending;
     sigemptyset(&pipe);
     sigaddset(&pipe, SIGPIPE);
-    sigpending(&pending);
+    sigemptyset(&pending);
     pthread_sigmask(SIG_BLOCK, &pipe, &before);
+    if (sigismember(&before, SIGPIPE)) /* only then can one be waiting */
+        sigpending(&pending);
     const ssize_t written = write(fd, data, n);
     const int bad = errno;
     if (written < 0 && bad == EPIPE && !sigismember(&pending, SIGPIPE))
@@ -220,7 +227,8 @@ static bool room_for(struct child *c, size_t n)
     return true;
 }
 
-/* What has come, but one byte more than most at most. */
+/* What has come, up to one byte more than most: a reply that is whole may have
+ * bytes behind it. */
 static enum child_said hear(struct child *c, size_t most, child_whole *whole,
                             void *context, bool *done)
 {
@@ -237,7 +245,7 @@ static enum child_said hear(struct child *c, size_t most, child_whole *whole,
     c->replied += (size_t)got;
     c->reply[c->replied] = '\0';
     *done = whole(context, c->reply, c->replied);
-    return c->replied > most ? CHILD_MUCH : CHILD_WHOLE;
+    return c->replied > most && !*done ? CHILD_MUCH : CHILD_WHOLE;
 }
 
 enum child_said child_ask(struct child *c, const void *said, size_t n,
@@ -251,8 +259,9 @@ enum child_said child_ask(struct child *c, const void *said, size_t n,
     if (!room_for(c, 1))
         return CHILD_MEMORY;
     c->reply[0] = '\0';
-    if (poll(fds, 1, 0) > 0)
+    if (c->asked && poll(fds, 1, 0) > 0)
         return fds[0].revents & POLLIN ? CHILD_SPOKE : CHILD_GONE;
+    c->asked = true;
     for (bool done = false; !done || n > 0;) {
         if (n > 0) {
             const ssize_t wrote = write_quietly(c->to, at, n);

@@ -18,6 +18,7 @@
 struct child {
     pid_t pid, keeper;
     int to, from, lifeline; /* our ends */
+    bool asked;             /* once, at least */
     char *reply;            /* what it said last, with a NUL behind */
     size_t replied, room;
 };
@@ -33,7 +34,10 @@ void child_stop(struct child *c);
  * 11 (Segmentation fault)", or that it did not. */
 void child_bury(struct child *c, struct err *how);
 
-/** The same with time for it to leave: its input ends first. */
+/** Ends its input, upon which it should leave by itself. */
+void child_hush(struct child *c);
+
+/** Stops a child with time for it to leave: its input ends first. */
 void child_dismiss(struct child *c);
 
 /** Says whether a reply is whole.  It is asked whenever more has come, with all
@@ -45,12 +49,14 @@ enum child_said {
     CHILD_GONE,  /* it closed its input or output before */
     CHILD_LATE,  /* the time was up before */
     CHILD_MUCH,  /* more than most bytes, and not whole */
-    CHILD_SPOKE, /* it had said something before it was asked; not asked */
+    CHILD_SPOKE, /* it had said something before it was asked, if not for the
+                    first time; not asked */
     CHILD_MEMORY,
 };
 
-/** Tells the child n bytes and takes its reply, at most `most` bytes, into
- * c->reply; both at once, so that neither waits for the other. */
+/** Tells the child n bytes and takes its reply into c->reply, `most` bytes and
+ * one at most, which may be more than the whole one; both at once, so that
+ * neither waits for the other. */
 enum child_said child_ask(struct child *c, const void *said, size_t n,
                           size_t most, double seconds, child_whole *whole,
                           void *context);

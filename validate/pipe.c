@@ -11,9 +11,7 @@
 #include "validate/handshake.h"
 #include "validate/protocol.h"
 
-/* Text is split more finely, as it takes more room. */
-enum { TEXT_RECORDS = 1024, TEXT_LINE = 512, NUMBER = 32 };
-enum { PORTION = 256, ANSWER_MAX = 5 + BANDS_MAX };
+enum { NUMBER = 32, PORTION = 256, ANSWER_MAX = 5 + BANDS_MAX };
 
 static double time_limit = 10;
 
@@ -75,7 +73,7 @@ static void end_of(struct child *c, enum child_said said, double seconds,
         err_set(what, "no answer within %g s", seconds);
         break;
     case CHILD_MUCH:
-        err_set(what, "more than was asked for");
+        err_set(what, "more than any answer could be");
         break;
     case CHILD_SPOKE:
         err_set(what, "bytes on its standard output that nobody asked for");
@@ -225,6 +223,9 @@ static bool binary_read(const struct request *r, const struct child *c,
                        "of (%u, %zu), as text \"%s\"",
                        h.op, h.n, (unsigned)r->op, r->n, said);
     }
+    if (c->replied > binary_size(r))
+        return err_set(err, "more than the %zu bytes that were asked for",
+                       binary_size(r));
     memcpy(answer, c->reply + sizeof h, binary_size(r) - sizeof h);
     return true;
 }
@@ -258,8 +259,25 @@ static bool text_read(const struct request *r, const struct child *c,
         at = stop + 1;
     }
     return at == c->reply + c->replied ||
-           err_set(err, "%zu bytes behind the last line of the answer",
+           err_set(err,
+                   "%zu bytes behind the last line of the answer that "
+                   "nobody asked for",
                    (size_t)(c->reply + c->replied - at));
+}
+
+/* What no formula can make good. */
+static bool answer_check(const struct request *r, const double *answer,
+                         struct err *err)
+{
+    for (size_t i = 1; r->op == PROTOCOL_SAMPLE && i <= r->n; i++) {
+        const double delta = answer[i * (size_t)r->numbers - 1];
+        if (delta != 0 && delta != 1)
+            return err_set(err,
+                           "delta of sample %zu of the answer is %g, expected "
+                           "0 or 1",
+                           i, delta);
+    }
+    return true;
 }
 
 /* The request as bytes, owned by the caller. */
@@ -301,13 +319,15 @@ static bool ask(struct request *r, struct worker *w, double *answer,
     }
     r->lines = r->looked = 0;
     const enum child_said said =
-        text ? child_ask(&w->child, bytes, size, r->n * TEXT_LINE, seconds,
-                         text_whole, r)
+        text ? child_ask(&w->child, bytes, size, r->n * PROTOCOL_TEXT_LINE,
+                         seconds, text_whole, r)
              : child_ask(&w->child, bytes, size, binary_size(r), seconds,
                          binary_whole, r);
     free(bytes);
-    if (said == CHILD_WHOLE && (text ? text_read(r, &w->child, answer, what)
-                                     : binary_read(r, &w->child, answer, what)))
+    if (said == CHILD_WHOLE &&
+        (text ? text_read(r, &w->child, answer, what)
+              : binary_read(r, &w->child, answer, what)) &&
+        answer_check(r, answer, what))
         return true;
     const size_t heard = w->child.replied;
     end_of(&w->child, said, seconds, what);
@@ -453,7 +473,8 @@ static void answer(struct pipe *p, enum protocol_op op, size_t n,
                    const double *record, double *out)
 {
     const size_t numbers = (size_t)protocol_answer(op, p->bands.count);
-    const size_t most = p->hello.text ? TEXT_RECORDS : PROTOCOL_RECORDS;
+    const size_t most =
+        p->hello.text ? PROTOCOL_TEXT_RECORDS : PROTOCOL_RECORDS;
     struct worker *w = NULL;
     size_t portion = most, at = 0;
     bool narrowing = false, mine = false;
@@ -520,7 +541,7 @@ static struct bsdf_sample sample_read(const struct pipe *p,
 {
     struct bsdf_sample s = { .wi = { out[0], out[1], out[2] },
                              .pdf = out[3],
-                             .delta = out[4 + p->bands.count] != 0 };
+                             .delta = out[4 + p->bands.count] == 1 };
     const double scale = compression(p, record[2], s.wi.z);
     for (int b = 0; b < p->bands.count; b++)
         s.weight.band[b] = out[4 + b] * scale;
@@ -630,6 +651,8 @@ static struct bsdf_claims claims(const void *state, const struct bands *bands)
 
 static void pipe_free(struct pipe *p)
 {
+    for (struct worker *w = p->idle; w; w = w->next)
+        child_hush(&w->child); /* so that they leave at the same time */
     while (p->idle) {
         struct worker *w = p->idle;
         p->idle = w->next;

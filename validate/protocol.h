@@ -51,8 +51,9 @@
  * Binary: a struct protocol_header and n records of PROTOCOL_NUMBERS doubles;
  * the answer is the same header and n answers.  Text: a line `eval n`, `pdf n`
  * or `sample n`, and n lines of PROTOCOL_NUMBERS numbers as %.17g; the answer
- * is n lines of numbers between blanks, in any form that strtod reads.  At the
- * end the toolkit closes the adapter's input, and it leaves.
+ * is n lines of numbers between blanks, in any form that strtod reads, of
+ * PROTOCOL_TEXT_LINE bytes at most, and n at most PROTOCOL_TEXT_RECORDS.  At
+ * the end the toolkit closes the adapter's input, and it leaves.
  *
  * `given wi`: the direction that is given is the light's, the one asked about
  * or sampled the viewer's, as for a path that starts at a light; f and weight
@@ -73,6 +74,8 @@ enum {
     PROTOCOL_NUMBERS = 6,
     PROTOCOL_LINES = 256,
     PROTOCOL_LINE = 4096, /* bytes, the newline among them */
+    PROTOCOL_TEXT_RECORDS = 1024,
+    PROTOCOL_TEXT_LINE = 512,
 };
 
 enum protocol_op { PROTOCOL_EVAL = 1, PROTOCOL_PDF, PROTOCOL_SAMPLE };
