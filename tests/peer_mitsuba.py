@@ -29,37 +29,135 @@ WHITE = {"type": "rgb", "value": [1, 1, 1]}
 
 def models():
     """A BSDF, whether it transmits, and the variant if not the default one."""
-    yield {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.2, 0.5, 0.9]}}, False, None
+    yield (
+        {
+            "type": "diffuse",
+            "reflectance": {"type": "rgb", "value": [0.2, 0.5, 0.9]},
+        },
+        False,
+        None,
+    )
     yield {"type": "conductor", "material": "Au"}, False, None
     for alpha in (0.001, 0.01, 0.05, 0.1, 0.5, 1.0):
         for distribution in ("beckmann", "ggx"):
             for visible in (True, False):
-                yield {"type": "roughconductor", "material": "Au", "alpha": alpha,
-                       "distribution": distribution, "sample_visible": visible}, False, None
-    yield {"type": "roughconductor", "material": "Au", "alpha_u": 0.3, "alpha_v": 0.1,
-           "distribution": "ggx"}, False, None
+                yield (
+                    {
+                        "type": "roughconductor",
+                        "material": "Au",
+                        "alpha": alpha,
+                        "distribution": distribution,
+                        "sample_visible": visible,
+                    },
+                    False,
+                    None,
+                )
+    yield (
+        {
+            "type": "roughconductor",
+            "material": "Au",
+            "alpha_u": 0.3,
+            "alpha_v": 0.1,
+            "distribution": "ggx",
+        },
+        False,
+        None,
+    )
     yield {"type": "dielectric"}, True, None
     yield {"type": "thindielectric"}, True, None
     for alpha in (0.01, 0.1, 0.5):
         for distribution in ("beckmann", "ggx"):
-            yield {"type": "roughdielectric", "alpha": alpha, "distribution": distribution}, True, None
-    yield {"type": "roughdielectric", "alpha": 0.1, "distribution": "ggx"}, True, "scalar_rgb"
+            yield (
+                {
+                    "type": "roughdielectric",
+                    "alpha": alpha,
+                    "distribution": distribution,
+                },
+                True,
+                None,
+            )
+    yield (
+        {"type": "roughdielectric", "alpha": 0.1, "distribution": "ggx"},
+        True,
+        "scalar_rgb",
+    )
     yield {"type": "plastic"}, False, None
     yield {"type": "plastic", "nonlinear": True}, False, None
     for alpha in (0.05, 0.3):
         for distribution in ("beckmann", "ggx"):
-            yield {"type": "roughplastic", "alpha": alpha, "distribution": distribution}, False, None
-    yield {"type": "roughplastic", "alpha": 0.3, "distribution": "ggx"}, False, "scalar_rgb"
+            yield (
+                {
+                    "type": "roughplastic",
+                    "alpha": alpha,
+                    "distribution": distribution,
+                },
+                False,
+                None,
+            )
+    yield (
+        {"type": "roughplastic", "alpha": 0.3, "distribution": "ggx"},
+        False,
+        "scalar_rgb",
+    )
     yield {"type": "principled"}, False, None
     yield {"type": "principled", "base_color": WHITE}, False, None
-    yield {"type": "principled", "roughness": 0.3, "metallic": 1.0}, False, None
-    yield {"type": "principled", "roughness": 0.3, "metallic": 0.5, "anisotropic": 0.6, "spec_tint": 0.5}, False, None
+    yield (
+        {"type": "principled", "roughness": 0.3, "metallic": 1.0},
+        False,
+        None,
+    )
+    yield (
+        {
+            "type": "principled",
+            "roughness": 0.3,
+            "metallic": 0.5,
+            "anisotropic": 0.6,
+            "spec_tint": 0.5,
+        },
+        False,
+        None,
+    )
     yield {"type": "principled", "sheen": 1.0, "flatness": 0.5}, False, None
-    yield {"type": "principled", "clearcoat": 1.0, "clearcoat_gloss": 0.5}, False, None
-    yield {"type": "principled", "base_color": WHITE, "sheen": 1.0, "clearcoat": 1.0}, False, None
-    yield {"type": "principled", "roughness": 0.4, "spec_trans": 1.0}, True, None
-    yield {"type": "principled", "roughness": 0.4, "spec_trans": 0.5, "metallic": 0.2}, True, None
-    yield {"type": "principledthin", "eta": 1.4, "spec_trans": 0.5, "diff_trans": 0.8}, True, None
+    yield (
+        {"type": "principled", "clearcoat": 1.0, "clearcoat_gloss": 0.5},
+        False,
+        None,
+    )
+    yield (
+        {
+            "type": "principled",
+            "base_color": WHITE,
+            "sheen": 1.0,
+            "clearcoat": 1.0,
+        },
+        False,
+        None,
+    )
+    yield (
+        {"type": "principled", "roughness": 0.4, "spec_trans": 1.0},
+        True,
+        None,
+    )
+    yield (
+        {
+            "type": "principled",
+            "roughness": 0.4,
+            "spec_trans": 0.5,
+            "metallic": 0.2,
+        },
+        True,
+        None,
+    )
+    yield (
+        {
+            "type": "principledthin",
+            "eta": 1.4,
+            "spec_trans": 0.5,
+            "diff_trans": 0.8,
+        },
+        True,
+        None,
+    )
 
 
 # -- causes -------------------------------------------------------------------
@@ -85,17 +183,35 @@ def facet(a, b, weight):
 def rational_masking(bsdf, variant, verdict):
     """Beckmann's G1 is off by more than 1e-4 toward the given direction, and
     what failed is not off by more than twice that."""
-    if bsdf["type"] not in ("roughconductor", "roughdielectric") or bsdf["distribution"] != "beckmann":
+    if (
+        bsdf["type"] not in ("roughconductor", "roughdielectric")
+        or bsdf["distribution"] != "beckmann"
+    ):
         return False
-    if not bsdf.get("sample_visible", True) or verdict["check"] not in ("pdf", "chi2", "jacobian", "weights"):
+    if not bsdf.get("sample_visible", True) or verdict["check"] not in (
+        "pdf",
+        "chi2",
+        "jacobian",
+        "weights",
+    ):
         return False
     x, y, z = xyz(verdict["wo"])
     a = abs(z) / (bsdf["alpha"] * math.hypot(x, y))
     exact = 2 / (1 + math.erf(a) + math.exp(-a * a) / (a * math.sqrt(math.pi)))
-    fit = 1 if a >= 1.6 else (3.535 * a + 2.181 * a * a) / (1 + 2.276 * a + 2.577 * a * a)
+    fit = (
+        1
+        if a >= 1.6
+        else (3.535 * a + 2.181 * a * a) / (1 + 2.276 * a + 2.577 * a * a)
+    )
     off = abs(fit / exact - 1)
-    said = re.search(r"(?:sum|share =) ([0-9.]+)", verdict["note"]) if verdict["check"] in ("pdf", "jacobian") else None
-    return off > 1e-4 and (said is None or abs(float(said.group(1)) - 1) < 2 * off)
+    said = (
+        re.search(r"(?:sum|share =) ([0-9.]+)", verdict["note"])
+        if verdict["check"] in ("pdf", "jacobian")
+        else None
+    )
+    return off > 1e-4 and (
+        said is None or abs(float(said.group(1)) - 1) < 2 * off
+    )
 
 
 def lost_sine(bsdf, variant, verdict):
@@ -114,7 +230,9 @@ def lost_sine(bsdf, variant, verdict):
 def grazed_facet(bsdf, variant, verdict):
     """Light leaves a facet that it grazes: cos_t, from 1 - eta^2 sin^2 in float,
     is known to no more than 1e-4."""
-    eta = {"roughdielectric": 1.5046 / 1.000277, "principled": 1.5}.get(bsdf["type"])
+    eta = {"roughdielectric": 1.5046 / 1.000277, "principled": 1.5}.get(
+        bsdf["type"]
+    )
     if not eta or verdict["check"] != "reciprocity" or "wi" not in verdict:
         return False
     o, i = xyz(verdict["wo"]), xyz(verdict["wi"])
@@ -133,28 +251,48 @@ def unmasked_pdf(bsdf, variant, verdict):
         return False
     note, check = verdict["note"], verdict["check"]
     if check == "finite":
-        return bool(re.search(r"first: pdf = -?nan", note)) and abs(xyz(verdict["wo"])[2]) < 1e-7
+        return (
+            bool(re.search(r"first: pdf = -?nan", note))
+            and abs(xyz(verdict["wo"])[2]) < 1e-7
+        )
     if bsdf["type"] == "principledthin":
         return False
-    return (check == "support" and note.startswith("pdf =") and "other side" in note or
-            check == "pdf" and "integral 1.0" in note or check == "chi2")
+    return (
+        check == "support"
+        and note.startswith("pdf =")
+        and "other side" in note
+        or check == "pdf"
+        and "integral 1.0" in note
+        or check == "chi2"
+    )
 
 
 def corner(bsdf, variant, verdict):
     """The visible normals of GGX at u = (0, 1/2), where the disk's rim is."""
-    return (bsdf.get("distribution") == "ggx" and bsdf.get("sample_visible", True) and
-            verdict["check"] in ("finite", "sample") and "nan" in verdict["note"] and
-            ("u = (0, 0.5)" in verdict["note"] or verdict["check"] == "sample"))
+    return (
+        bsdf.get("distribution") == "ggx"
+        and bsdf.get("sample_visible", True)
+        and verdict["check"] in ("finite", "sample")
+        and "nan" in verdict["note"]
+        and ("u = (0, 0.5)" in verdict["note"] or verdict["check"] == "sample")
+    )
 
 
 def thin_sides(bsdf, variant, verdict):
-    return (bsdf["type"] == "principledthin" and bsdf.get("spec_trans", 0) > 0 and
-            verdict["check"] == "reciprocity" and
-            xyz(verdict["wo"])[2] * xyz(verdict["wi"])[2] < 0)
+    return (
+        bsdf["type"] == "principledthin"
+        and bsdf.get("spec_trans", 0) > 0
+        and verdict["check"] == "reciprocity"
+        and xyz(verdict["wo"])[2] * xyz(verdict["wi"])[2] < 0
+    )
 
 
 def by_design(bsdf, variant, verdict):
-    return bsdf["type"] == "principled" and bsdf.get("base_color") == WHITE and verdict["check"] == "energy"
+    return (
+        bsdf["type"] == "principled"
+        and bsdf.get("base_color") == WHITE
+        and verdict["check"] == "energy"
+    )
 
 
 CAUSES = {
@@ -167,44 +305,58 @@ CAUSES = {
     by_design: "the principled model is not made to conserve energy",
 }
 WHY = {
-    rational_masking: """\
+    rational_masking: (
+        """\
     smith_g1() of microfacet.h takes Walter's fit, good to 0.35 %, while visible
     normals are drawn exactly: pdf and weight are off by as much, and by the same
     everywhere.  At alpha 0.5 from 75 degrees the fit is 0.29 % below
     2 / (1 + erf(a) + exp(-a^2) / (a sqrt(pi))).  GGX, whose masking is exact,
-    has no such failure.  Theirs, and known to them: a comment there says so.""",
-    lost_sine: """\
+    has no such failure.  Theirs, and known to them: a comment there says so."""
+    ),
+    lost_sine: (
+        """\
     sample() of microfacet.h, sample_visible off, has sin = sqrt(1 - cos^2): in
     float that leaves 2^-24 / sin^2 of it.  At alpha 0.001 Beckmann draws 37
     different angles in 20000; at 0.01 1877, at 0.1 nearly as many as there are.
     Theirs, of single precision alone; sqrt(tan^2 / (1 + tan^2)) would not have it,
-    nor do visible normals, the default.""",
-    grazed_facet: """\
+    nor do visible normals, the default."""
+    ),
+    grazed_facet: (
+        """\
     Fresnel's cos_t is the root of 1 - eta^2 (1 - cos^2), which is near 0 for a facet
     that the light beyond grazes; f is proportional to it.  From the other side it
     is known well, so the two ways differ.  The same formulas in double agree to 1e-9
     at five such pairs with GGX; in numpy's float they are 0.1 to 5 % apart.  At the
     two worst, with Beckmann, cos_t^2 is 6e-8 and 3e-8, one rounding of 1.
-    Single precision; the values are a small part of the peak's.""",
-    unmasked_pdf: """\
+    Single precision; the values are a small part of the peak's."""
+    ),
+    unmasked_pdf: (
+        """\
     pdf() and eval_pdf() of roughplastic.cpp put cos > 0 into `active`, return early
     where no lane is active, and then `return result` without it, so that only the
     scalar variants give 0 below the surface (the scalar run below is sound).  The
     integral over the sphere exceeds 1, and at the horizon there is 0 / 0.
     principledthin.cpp returns its pdf likewise.  Theirs; harmless to who looks at
-    the value first, as it is 0 there.""",
-    corner: """\
+    the value first, as it is 0 there."""
+    ),
+    corner: (
+        """\
     sample_visible_11() of microfacet.h maps u = (0, 1/2) to the disk's rim, y = z = 0:
     rcp(sin y + cos z) is infinite and infinity times 0 is no number.  roughdielectric
-    passes it on in the scalar variant.  Theirs, at one point of the square.""",
-    thin_sides: """\
+    passes it on in the scalar variant.  Theirs, at one point of the square."""
+    ),
+    thin_sides: (
+        """\
     principledthin.cpp finds the half vector from the mirrored direction, but
     mac_mic_compatibility() and the masking G are given the one that goes through, so
     that pairs drop out one way that count the other way.  The comment there says
-    that the model is symmetric.  Theirs.""",
-    by_design: """\
+    that the model is symmetric.  Theirs."""
+    ),
+    by_design: (
+        """\
     B. Burley, Physically Based Shading at Disney, 2012: diffuse, sheen and clearcoat
-    are added to the specular lobe without taking from one another.""",
+    are added to the specular lobe without taking from one another."""
+    ),
 }
 
 
@@ -213,9 +365,19 @@ WHY = {
 
 def name_of(bsdf):
     def value(x):
-        return "/".join(f"{v:g}" for v in x["value"]) if isinstance(x, dict) else \
-            str(x).lower() if isinstance(x, bool) else x if isinstance(x, str) else f"{x:g}"
-    settings = ",".join(f"{k}={value(v)}" for k, v in bsdf.items() if k != "type")
+        return (
+            "/".join(f"{v:g}" for v in x["value"])
+            if isinstance(x, dict)
+            else (
+                str(x).lower()
+                if isinstance(x, bool)
+                else x if isinstance(x, str) else f"{x:g}"
+            )
+        )
+
+    settings = ",".join(
+        f"{k}={value(v)}" for k, v in bsdf.items() if k != "type"
+    )
     return bsdf["type"] + (":" + settings if settings else "")
 
 
@@ -232,16 +394,27 @@ def run(validate, python, bsdf, transmits, variant):
         command = [validate, spec, "--samples", str(SAMPLES), "--json", out]
         for wo in ABOVE + (BELOW if transmits else ()):
             command += ["--wo", wo]
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        done = subprocess.run(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
         if done.returncode not in (0, 1):
             return None, done.stderr.strip()
         with open(out) as f:
             results = json.load(f)["results"]
-    return [v for r in results for v in r["verdicts"] if v["verdict"] != "not applicable"], None
+    return [
+        v
+        for r in results
+        for v in r["verdicts"]
+        if v["verdict"] != "not applicable"
+    ], None
 
 
 def worst_first(verdict):
-    ratio = verdict["value"] / verdict["limit"] if verdict["limit"] and verdict["value"] is not None else float("inf")
+    ratio = (
+        verdict["value"] / verdict["limit"]
+        if verdict["limit"] and verdict["value"] is not None
+        else float("inf")
+    )
     return -ratio
 
 
@@ -268,30 +441,48 @@ def main(argv):
         verdicts, trouble = run(validate, python, bsdf, transmits, variant)
         seconds = time.monotonic() - start
         if verdicts is None:
-            print(f"{name}  {seconds:.0f} s: could not be run: {trouble}", flush=True)
+            print(
+                f"{name}  {seconds:.0f} s: could not be run: {trouble}",
+                flush=True,
+            )
             broken += 1
             continue
         failed = {}
         for v in verdicts:
             if v["verdict"] == "fail":
                 failed.setdefault(v["check"], []).append(v)
-        print(f"{name}  {seconds:.0f} s: {len(verdicts)} verdicts, "
-              f"{'sound' if not failed else 'FAIL ' + ' '.join(failed)}", flush=True)
+        print(
+            f"{name}  {seconds:.0f} s: {len(verdicts)} verdicts, "
+            f"{'sound' if not failed else 'FAIL ' + ' '.join(failed)}",
+            flush=True,
+        )
         sound, failing = sound + (not failed), failing + bool(failed)
         for check, of_check in failed.items():
             # Every direction must be explained; the worst that is not is shown.
-            of_check.sort(key=lambda v: (cause_of(bsdf, variant, v) is not None, worst_first(v)))
+            of_check.sort(
+                key=lambda v: (
+                    cause_of(bsdf, variant, v) is not None,
+                    worst_first(v),
+                )
+            )
             v = of_check[0]
             cause = cause_of(bsdf, variant, v)
             wi = f", wi = {angles(v['wi'])}" if "wi" in v else ""
-            print(f"    {check} {number(v['value'])}, limit {number(v['limit'])}"
-                  f"{' ' + v['unit'] if v['unit'] else ''}, at wo = {angles(v['wo'])}{wi}\n"
-                  f"      {v['note']}\n      {CAUSES[cause] if cause else 'UNEXPLAINED'}", flush=True)
+            print(
+                f"    {check} {number(v['value'])}, limit"
+                f" {number(v['limit'])}{' ' + v['unit'] if v['unit'] else ''},"
+                f" at wo = {angles(v['wo'])}{wi}\n      {v['note']}\n     "
+                f" {CAUSES[cause] if cause else 'UNEXPLAINED'}",
+                flush=True,
+            )
             unexplained += cause is None
             if cause:
                 reasons[cause] = reasons.get(cause, 0) + 1
-    print(f"\n{sound} models sound, {failing} with failing checks, {broken} not run, "
-          f"{unexplained} failures unexplained, {time.monotonic() - begin:.0f} s")
+    print(
+        f"\n{sound} models sound, {failing} with failing checks, {broken} not"
+        f" run, {unexplained} failures unexplained,"
+        f" {time.monotonic() - begin:.0f} s"
+    )
     for cause in CAUSES:
         if cause in reasons:
             print(f"\n{CAUSES[cause]}: {reasons[cause]}\n{WHY[cause]}")

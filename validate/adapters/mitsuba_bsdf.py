@@ -78,7 +78,8 @@ def claim(text):
     key, _, value = text.partition("=")
     if key not in CLAIMS or not value:
         raise argparse.ArgumentTypeError(
-            f"\"{text}\": expected KEY=VALUE with a key of {', '.join(CLAIMS)}")
+            f"\"{text}\": expected KEY=VALUE with a key of {', '.join(CLAIMS)}"
+        )
     return key, value
 
 
@@ -86,25 +87,63 @@ def place(text):
     try:
         u, v = (float(x) for x in text.split(","))
     except ValueError:
-        raise Refused(f"--uv {text}: expected two numbers, as in 0.5,0.5") from None
+        raise Refused(
+            f"--uv {text}: expected two numbers, as in 0.5,0.5"
+        ) from None
     return u, v
 
 
 def arguments(argv):
     parser = argparse.ArgumentParser(
-        description="Any BSDF of Mitsuba 3, as an adapter of bsdf-validate.")
-    parser.add_argument("bsdf", metavar="BSDF", help="a dictionary in JSON, XML, or the name of an .xml file")
+        description="Any BSDF of Mitsuba 3, as an adapter of bsdf-validate."
+    )
     parser.add_argument(
-        "--variant", metavar="NAME",
-        help="of Mitsuba; if not given llvm_ad_rgb, or llvm_ad_spectral where "
-        f"wavelengths are asked for, or without LLVM {LLVM_MIN} scalar_...")
+        "bsdf",
+        metavar="BSDF",
+        help="a dictionary in JSON, XML, or the name of an .xml file",
+    )
+    parser.add_argument(
+        "--variant",
+        metavar="NAME",
+        help=(
+            "of Mitsuba; if not given llvm_ad_rgb, or llvm_ad_spectral where "
+            f"wavelengths are asked for, or without LLVM {LLVM_MIN} scalar_..."
+        ),
+    )
     parser.add_argument("--id", metavar="ID", help="which BSDF of a scene")
-    parser.add_argument("--uv", metavar="U,V", default="0.5,0.5", help="where textures are looked up; 0.5,0.5")
-    parser.add_argument("--import", metavar="FILE.py", dest="script", action="append", default=[],
-                        help="run this first, as to register BSDFs written in Python; may be repeated")
-    parser.add_argument("--claim", metavar="KEY=VALUE", action="append", default=[], type=claim,
-                        help="say this of the BSDF instead of what was found out: " + ", ".join(CLAIMS))
-    parser.add_argument("--threads", metavar="N", type=int, default=1, help="of the LLVM variants; 1")
+    parser.add_argument(
+        "--uv",
+        metavar="U,V",
+        default="0.5,0.5",
+        help="where textures are looked up; 0.5,0.5",
+    )
+    parser.add_argument(
+        "--import",
+        metavar="FILE.py",
+        dest="script",
+        action="append",
+        default=[],
+        help=(
+            "run this first, as to register BSDFs written in Python; may be"
+            " repeated"
+        ),
+    )
+    parser.add_argument(
+        "--claim",
+        metavar="KEY=VALUE",
+        action="append",
+        default=[],
+        type=claim,
+        help="say this of the BSDF instead of what was found out: "
+        + ", ".join(CLAIMS),
+    )
+    parser.add_argument(
+        "--threads",
+        metavar="N",
+        type=int,
+        default=1,
+        help="of the LLVM variants; 1",
+    )
     return parser.parse_args(argv)
 
 
@@ -115,19 +154,27 @@ def variant_for(given, wavelengths):
     """The variant to use, and set."""
     import drjit as dr
     import mitsuba as mi
+
     colour = "spectral" if wavelengths else "rgb"
     llvm = dr.detail.llvm_version()[0] >= LLVM_MIN
     name = given or ("llvm_ad_" if llvm else "scalar_") + colour
     if name not in mi.variants():
-        raise Refused(f"variant \"{name}\": expected one of {', '.join(mi.variants())}")
+        raise Refused(
+            f"variant \"{name}\": expected one of {', '.join(mi.variants())}"
+        )
     if "polarized" in name:
-        raise Refused(f"variant \"{name}\": polarization is not asked about")
+        raise Refused(f'variant "{name}": polarization is not asked about')
     if "mono" not in name and colour not in name:
-        raise Refused(f"variant \"{name}\": expected one of {colour}, as the toolkit "
-                      f"asks for {'wavelengths' if wavelengths else 'R, G, B'}")
+        raise Refused(
+            f'variant "{name}": expected one of {colour}, as the toolkit '
+            f"asks for {'wavelengths' if wavelengths else 'R, G, B'}"
+        )
     if name.startswith("llvm") and not llvm:
-        raise Refused(f"variant \"{name}\": expected LLVM {LLVM_MIN} or later, as in Debian's "
-                      f"libllvm19, found {dr.detail.llvm_version()[0]} (DRJIT_LIBLLVM_PATH names one)")
+        raise Refused(
+            f'variant "{name}": expected LLVM {LLVM_MIN} or later, as in'
+            f" Debian's libllvm19, found {dr.detail.llvm_version()[0]}"
+            " (DRJIT_LIBLLVM_PATH names one)"
+        )
     mi.set_variant(name)
     return name
 
@@ -140,11 +187,15 @@ def bsdf_of_scene(scene, wanted):
         return found[wanted]
     if wanted is None and len(found) == 1:
         return next(iter(found.values()))
-    raise Refused(f"--id {wanted or 'is missing'}: expected one of the scene's, {', '.join(found)}")
+    raise Refused(
+        f"--id {wanted or 'is missing'}: expected one of the scene's,"
+        f" {', '.join(found)}"
+    )
 
 
 def load(args):
     import mitsuba as mi
+
     text = args.bsdf.strip()
     for script in args.script:
         runpy.run_path(script)
@@ -162,7 +213,9 @@ def load(args):
     if isinstance(loaded, mi.Scene):
         loaded = bsdf_of_scene(loaded, args.id)
     if not isinstance(loaded, mi.BSDF):
-        raise Refused(f"{text[:200]}: expected a BSDF, got {type(loaded).__name__}")
+        raise Refused(
+            f"{text[:200]}: expected a BSDF, got {type(loaded).__name__}"
+        )
     return loaded
 
 
@@ -172,6 +225,7 @@ class Model:
     def __init__(self, bsdf, variant, wavelengths, uv):
         import drjit as dr
         import mitsuba as mi
+
         self.bsdf = bsdf
         self.context = mi.BSDFContext()  # radiance, all components
         self.wavelengths = wavelengths
@@ -191,6 +245,7 @@ class Model:
         """Traces each operation once; what cannot be is traced every time."""
         import drjit as dr
         import numpy as np
+
         record = np.array([[0.6, 0, 0.8, 0, 0.6, 0.8]], dtype=np.float32)
         plain, frozen = self.ops, []
         for op, f in zip((EVAL, PDF, SAMPLE), plain):
@@ -210,10 +265,13 @@ class Model:
     def surface(self):
         import drjit as dr
         import mitsuba as mi
+
         si = dr.zeros(mi.SurfaceInteraction3f)
         si.t = 1
         si.n = mi.Normal3f(0, 0, 1)
-        si.sh_frame = mi.Frame3f(mi.Vector3f(1, 0, 0), mi.Vector3f(0, 1, 0), mi.Vector3f(0, 0, 1))
+        si.sh_frame = mi.Frame3f(
+            mi.Vector3f(1, 0, 0), mi.Vector3f(0, 1, 0), mi.Vector3f(0, 0, 1)
+        )
         si.dp_du, si.dp_dv = mi.Vector3f(1, 0, 0), mi.Vector3f(0, 1, 0)
         si.uv = mi.Point2f(*self.uv)
         if self.wavelengths:
@@ -231,8 +289,11 @@ class Model:
         """Direction, pdf, weight, whether delta, and whether there is one."""
         import drjit as dr
         import mitsuba as mi
+
         si = self.interaction(given)
-        bs, weight = self.bsdf.sample(self.context, si, u.z, mi.Point2f(u.x, u.y))
+        bs, weight = self.bsdf.sample(
+            self.context, si, u.z, mi.Point2f(u.x, u.y)
+        )
         delta = mi.has_flag(bs.sampled_type, mi.BSDFFlags.Delta)
         # Most are; what follows takes most of the time of a scalar variant.
         if self.scalar and any(w != 0 for w in weight):
@@ -243,12 +304,15 @@ class Model:
         transmitted = mi.has_flag(bs.sampled_type, mi.BSDFFlags.Transmission)
         side = (reflected & (same > 0)) | (transmitted & (same < 0))
         value, density = self.eval(given, bs.wo), self.pdf(given, bs.wo)
-        black = dr.select(delta, bs.pdf > 0, side & dr.all(value == 0) & (density > 0))
+        black = dr.select(
+            delta, bs.pdf > 0, side & dr.all(value == 0) & (density > 0)
+        )
         return bs.wo, bs.pdf, weight, delta, there | black
 
     def answer(self, op, record, bands):
         """The numbers that go back for an array of records."""
         import numpy as np
+
         n = len(record)
         record = record.astype(np.float64 if self.double else np.float32)
         if op == SAMPLE:
@@ -259,17 +323,20 @@ class Model:
         if op == EVAL:
             return widened(rows, bands)
         wi, pdf, weight, delta, there = rows
-        out = np.concatenate([wi, pdf[:, None], widened(weight, bands), delta[:, None]], axis=1)
+        out = np.concatenate(
+            [wi, pdf[:, None], widened(weight, bands), delta[:, None]], axis=1
+        )
         out[~there.astype(bool)] = 0
         return out
 
     def all(self, op, record):
         import mitsuba as mi
         import numpy as np
+
         # Filled up with the first record, which is as good as any.
         rows = aligned(NUMBERS, len(record), record.dtype)
-        rows[:, :len(record)] = record.T
-        rows[:, len(record):] = record[:1].T
+        rows[:, : len(record)] = record.T
+        rows[:, len(record) :] = record[:1].T
         answer = self.ops[op - 1](mi.Vector3f(rows[:3]), mi.Vector3f(rows[3:]))
         size = rows.shape[1], len(record)
         if op != SAMPLE:
@@ -279,13 +346,22 @@ class Model:
     def each(self, op, record):
         import mitsuba as mi
         import numpy as np
+
         f, vector = self.ops[op - 1], mi.Vector3f
-        answers = [f(vector(a, b, c), vector(x, y, z)) for a, b, c, x, y, z in record.tolist()]
+        answers = [
+            f(vector(a, b, c), vector(x, y, z))
+            for a, b, c, x, y, z in record.tolist()
+        ]
         if op == PDF:
             return np.array(answers)
         if op == EVAL:
             return np.array([list(f) for f in answers])
-        rows = np.array([(*wi, pdf, *weight, delta, there) for wi, pdf, weight, delta, there in answers])
+        rows = np.array(
+            [
+                (*wi, pdf, *weight, delta, there)
+                for wi, pdf, weight, delta, there in answers
+            ]
+        )
         return rows[:, :3], rows[:, 3], rows[:, 4:-2], rows[:, -2], rows[:, -1]
 
 
@@ -293,6 +369,7 @@ def column(values, asked, n):
     """The first n of Dr.Jit's values.  A constant may come once, or as often as
     was asked for when the operation was traced."""
     import numpy as np
+
     rows = values.numpy().T
     return rows[:n] if len(rows) == asked else np.repeat(rows[:1], n, axis=0)
 
@@ -300,15 +377,17 @@ def column(values, asked, n):
 def aligned(rows, length, dtype):
     """An array of at least that length, a multiple of ALIGNMENT bytes."""
     import numpy as np
+
     width = -(-length * dtype.itemsize // ALIGNMENT) * ALIGNMENT
     memory = np.empty(rows * width + ALIGNMENT, dtype=np.uint8)
     begin = -memory.ctypes.data % ALIGNMENT
-    return memory[begin:begin + rows * width].view(dtype).reshape(rows, -1)
+    return memory[begin : begin + rows * width].view(dtype).reshape(rows, -1)
 
 
 def widened(values, bands):
     """A column for each band: the first of a spectrum's four, or one for all."""
     import numpy as np
+
     values = values.reshape(len(values), -1)
     if values.shape[1] == 1:
         return np.repeat(values, bands, axis=1)
@@ -320,6 +399,7 @@ def widened(values, bands):
 
 def has_any(flags, names):
     import mitsuba as mi
+
     return any(mi.has_flag(flags, getattr(mi.BSDFFlags, n)) for n in names)
 
 
@@ -328,28 +408,38 @@ def eta_of(model):
     import drjit as dr
     import mitsuba as mi
     import numpy as np
-    found = set()
+
 
     def through(given, u):
-        bs, weight = model.bsdf.sample(model.context, model.interaction(given), u.z, mi.Point2f(u.x, u.y))
+        bs, weight = model.bsdf.sample(
+            model.context, model.interaction(given), u.z, mi.Point2f(u.x, u.y)
+        )
         return bs.eta, (bs.wo.z < 0) & dr.any(weight > 0)
 
-    u = (np.arange(1024)[:, None] * [0.7548776662, 0.5698402910, 0.8191725134] + 0.5) % 1
+    u = (
+        np.arange(1024)[:, None] * [0.7548776662, 0.5698402910, 0.8191725134]
+        + 0.5
+    ) % 1
     given = mi.Vector3f(0.6, 0, 0.8)
     if model.scalar:
         answers = [through(given, mi.Vector3f(*x)) for x in u.tolist()]
     else:
-        eta, is_through = through(given, mi.Vector3f(np.ascontiguousarray(u.T)))
+        eta, is_through = through(
+            given, mi.Vector3f(np.ascontiguousarray(u.T))
+        )
         answers = np.broadcast(eta.numpy(), is_through.numpy())
     found = {float(eta) for eta, is_through in answers if is_through}
     if len(found) > 1:
-        sys.stderr.write(f"mitsuba_bsdf.py: samples have several indices, {sorted(found)}; "
-                         "--claim eta=X names the one to check with\n")
+        sys.stderr.write(
+            f"mitsuba_bsdf.py: samples have several indices, {sorted(found)}; "
+            "--claim eta=X names the one to check with\n"
+        )
     return max(found, default=1)
 
 
 def parameters(bsdf):
     import mitsuba as mi
+
     try:
         return {key: str(value) for key, value in mi.traverse(bsdf)}
     except Exception:  # some have values that Mitsuba cannot show
@@ -358,13 +448,18 @@ def parameters(bsdf):
 
 def handshake(model, variant, args):
     import mitsuba as mi
+
     flags = model.bsdf.flags()
     lobes = [name for name, theirs in LOBES.items() if has_any(flags, theirs)]
     if not lobes:
         raise Refused("its lobes are none that the toolkit knows")
     shown = parameters(model.bsdf)
-    through = has_any(flags, LOBES["diffuse_transmission"] + LOBES["glossy_transmission"] +
-                      LOBES["delta_transmission"])
+    through = has_any(
+        flags,
+        LOBES["diffuse_transmission"]
+        + LOBES["glossy_transmission"]
+        + LOBES["delta_transmission"],
+    )
     scaled = any("specular_" in key for key in shown)
     yes = {True: "yes", False: "no"}
     claims = {
@@ -378,7 +473,10 @@ def handshake(model, variant, args):
     lines = [
         "bsdf 1",
         "format binary",
-        f"name {model.bsdf.class_name()} of Mitsuba {mi.__version__}, {variant}",
+        (
+            f"name {model.bsdf.class_name()} of Mitsuba {mi.__version__},"
+            f" {variant}"
+        ),
         "lobes " + " ".join(lobes),
         *(f"{key} {value}" for key, value in claims.items()),
         f"precision {'double' if model.double else 'float'}",
@@ -401,10 +499,14 @@ def tell(out, lines):
 def bands_asked(stream):
     """Their count, and the wavelengths [nm] if they are not R, G, B."""
     lines = []
-    while (line := stream.readline(4096).decode(errors="replace").strip()):
+    while line := stream.readline(4096).decode(errors="replace").strip():
         lines.append(line.split())
-    if lines[:1] != [["bsdf", "1"]] or len(lines) < 2 or lines[1][0] != "bands":
-        raise Refused("expected \"bsdf 1\" and \"bands ...\" to begin with")
+    if (
+        lines[:1] != [["bsdf", "1"]]
+        or len(lines) < 2
+        or lines[1][0] != "bands"
+    ):
+        raise Refused('expected "bsdf 1" and "bands ..." to begin with')
     names = lines[1][2:]
     if lines[1][1] != str(len(names)) or not 1 <= len(names) <= 4:
         raise Refused(f"{' '.join(lines[1])}: expected one to four bands")
@@ -415,18 +517,23 @@ def bands_asked(stream):
 
 def serve(stream, out, model, bands):
     import numpy as np
+
     while header := stream.read(8):
         if len(header) < 8:
             raise EOFError("half a header")
         op, n = struct.unpack("=II", header)
         if op not in (EVAL, PDF, SAMPLE) or not 1 <= n <= RECORDS_MAX:
-            raise ValueError(f"op {op}, n {n}: expected op 1 to 3, n 1 to {RECORDS_MAX}")
+            raise ValueError(
+                f"op {op}, n {n}: expected op 1 to 3, n 1 to {RECORDS_MAX}"
+            )
         block = stream.read(n * NUMBERS * 8)
         if len(block) < n * NUMBERS * 8:
             raise EOFError("half a request")
         record = np.frombuffer(block, dtype=np.float64).reshape(n, NUMBERS)
         numbers = model.answer(op, record, bands)
-        out.write(header + np.ascontiguousarray(numbers, dtype=np.float64).tobytes())
+        out.write(
+            header + np.ascontiguousarray(numbers, dtype=np.float64).tobytes()
+        )
         out.flush()
 
 
