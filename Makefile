@@ -334,6 +334,24 @@ golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)
 	    build/venv/bin/pip install -q mpmath
 	build/venv/bin/python tests/golden.py tests/golden
 
+# LLVM is what Mitsuba's vectorised variants compile with; versions before 17
+# cannot.  Without it the scalar ones serve, more slowly.
+MITSUBA        ?= mitsuba==3.9.1
+MITSUBA_PYTHON := build/venv-mitsuba/bin/python
+HAS_LLVM       := $(MITSUBA_PYTHON) -c 'import drjit, sys; \
+                  sys.exit(drjit.detail.llvm_version()[0] < 17)' >/dev/null 2>&1
+
+.PHONY: peer-mitsuba
+peer-mitsuba: all ## validate the BSDFs of Mitsuba 3, and why some fail (Python, mitsuba from PyPI)
+	@[ -x $(MITSUBA_PYTHON) ] || python3 -m venv build/venv-mitsuba
+	@$(MITSUBA_PYTHON) -c 'import mitsuba, numpy' 2>/dev/null || \
+	    $(MITSUBA_PYTHON) -m pip install -q $(MITSUBA) numpy
+	@$(HAS_LLVM) || ! command -v apt-get >/dev/null 2>&1 || { \
+	    if [ "$$(id -u)" = 0 ]; then as=; else as=sudo; fi; \
+	    $$as apt-get update -qq && $$as apt-get install -y -qq \
+	        --no-install-recommends libllvm19 >/dev/null; }
+	python3 tests/peer_mitsuba.py $(BIN)/bsdf-validate $(MITSUBA_PYTHON) $(ONLY)
+
 # -- order --------------------------------------------------------------------
 
 C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(BENCH) $(HELPERS)

@@ -14,8 +14,10 @@ static void run(const struct subject *s, struct verdict *v)
         verdict_note(v, "computed in this program");
         return;
     }
-    if (!bsdf_trouble(s->bsdf, &what))
+    if (!bsdf_trouble(s->bsdf, &what)) {
+        verdict_note(v, "all answered");
         return;
+    }
     v->value = 1;
     verdict_note(v, "%s", what.text);
 }

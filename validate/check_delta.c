@@ -51,9 +51,9 @@ static bool delta_judge(const struct subject *s, const struct delta *d,
     const bool exists = expected(s, refracted, &right);
     /* Directions are exact to a few roundings e; the cosine beyond is the root
      * of a difference, and so off by e / cos, or sqrt(e) where it is 0. */
-    const double e = 16 * 0x1p-52;
+    const double e = 16 * s->claims.epsilon;
     const double close =
-        1e-14 + (refracted ? fmin(e / fabs(right.z), sqrt(e)) : 0);
+        3 * e + (refracted ? fmin(e / fabs(right.z), sqrt(e)) : 0);
     const double off = vec3_length(vec3_minus(d->wi, right));
     if (!(lobes &
           (refracted ? BSDF_DELTA_TRANSMISSION : BSDF_DELTA_REFLECTION)))

@@ -19,7 +19,8 @@ static void run(const struct subject *s, struct verdict *v)
     const struct survey *survey = &s->survey;
     const struct estimate q = survey_refusal(survey);
     /* Rounding in a sum of positive parts, far below what samples resolve. */
-    const struct estimate rounded = { q.value, q.error + 1e-12 };
+    const double rounding = fmax(1e-12, 4 * s->claims.epsilon);
+    const struct estimate rounded = { q.value, q.error + rounding };
     const double n = (double)survey->samples;
     const double limit = fmax(error_limit, 4 * survey->rounding);
     v->unit = "sigma";

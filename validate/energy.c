@@ -78,12 +78,14 @@ static bool by_quadrature(const struct subject *s, struct energy *e)
     e->capped = sum[bands + 1];
     for (int b = 0; b < bands; b++) {
         sum[b].error += survey_unknown * sum[b].value;
-        sum[b].error += (0x1p-48 + rounding) * fabs(sum[b].value);
+        sum[b].error +=
+            (16 * s->claims.epsilon + rounding) * fabs(sum[b].value);
         e->beside[b] = e->albedo[b] = sum[b];
         for (int k = 0; k < v->deltas; k++)
             e->albedo[b].value += v->delta[k].pdf * v->delta[k].weight.band[b] *
                                   subject_compression(s, v->delta[k].wi);
-        e->albedo[b].error += 0x1p-48 * fabs(e->albedo[b].value - sum[b].value);
+        e->albedo[b].error +=
+            16 * s->claims.epsilon * fabs(e->albedo[b].value - sum[b].value);
     }
     return ok;
 }
