@@ -28,23 +28,23 @@ static inline double fresnel_conductor(double cos_i, double eta, double k)
     const double c = cos_i, s2 = (1 - c) * (1 + c);
     const double re = (eta - k) * (eta + k) - s2, im = 2 * eta * k;
 
-    /* q = sqrt(re + i im), the larger part first so that nothing cancels. */
+    /* g is the larger part of q = sqrt(re + i im), so that nothing cancels, and
+     * a and b stand for g times the parts: the smaller is im / (2 g). */
     const double modulus = sqrt(re * re + im * im);
-    const double larger = sqrt((modulus + fabs(re)) / 2);
-    const double smaller = im / (2 * (larger > 0 ? larger : 1));
-    const double a = re >= 0 ? larger : smaller;
-    const double b = re >= 0 ? smaller : larger;
+    const double g2 = (modulus + fabs(re)) / 2, g = sqrt(g2);
+    const double a = re >= 0 ? g2 : im / 2;
+    const double b = re >= 0 ? im / 2 : g2;
 
-    /* |x - q|^2 and |x + q|^2 share x^2 + |q|^2 and differ in 2 x a. */
-    const double plus_s = c * c + modulus + 2 * c * a;
-    const double plus_p = s2 * s2 + c * c * modulus + 2 * c * s2 * a;
-    const double p = s2 - c * a;
-    const double minus_s = (c - a) * (c - a) + b * b;
-    const double minus_p = p * p + c * c * b * b;
-    /* (Rs + Rp) / 2 over one division.  Nothing to refract into: eta = k = 0
-     * at c = 0; nothing to tell the polarisations apart: s = 0. */
-    const double below = 2 * plus_s * plus_p;
-    const double above = minus_s * (plus_p + minus_p);
+    /* |x - q|^2 and |x + q|^2 share x^2 + |q|^2 and differ in 2 x a: the former
+     * times g^2, the latter times g. */
+    const double plus_s = (c * c + modulus) * g + 2 * c * a;
+    const double plus_p = (s2 * s2 + c * c * modulus) * g + 2 * c * s2 * a;
+    const double p = s2 * g - c * a, s = c * g - a;
+    const double minus_s = s * s + b * b;
+    const double minus_p = p * p + c * c * (b * b);
+    /* (Rs + Rp) / 2 over one division.  At q = 0 all is reflected. */
+    const double below = 2 * plus_s * plus_p * g2;
+    const double above = minus_s * (plus_p * g + minus_p);
     const double r = below > 0 ? above / below : 1;
     return r < 1 ? r : 1;
 }

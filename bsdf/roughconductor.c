@@ -70,9 +70,10 @@ static struct bsdf_claims claims(const void *state, const struct bands *bands)
                                  .eta = 1 };
 }
 
+/* Both; written as one comparison, as gcc 12 makes vectors of that. */
 INLINE bool above(struct vec3 wo, struct vec3 wi)
 {
-    return (wo.z > 0) & (wi.z > 0);
+    return (wo.z > 0 ? wi.z : 0) > 0;
 }
 
 /* What a pdf of visible normals has of wo: G1(wo) / (4 cos_o). */
@@ -132,12 +133,18 @@ INLINE struct draw draw_at(const struct roughconductor *m, struct facets facets,
     /* f cos_i / pdf, with D divided out by hand. */
     const double weight =
         m->sample_visible ? (1 + lo) / per_g : cos_d / (wo.z * n.z * per_g);
-    const bool good = above(wo, wi) & (cos_d > 0) & (p > 0);
+    return (struct draw){ wi, p, weight, cos_d };
+}
+
+/* All 0 where a draw is refused; p is 0 unless both are above. */
+INLINE struct draw draw_kept(struct draw s)
+{
+    const bool good = (s.cos_d > 0 ? s.pdf : 0) > 0;
     return (struct draw){
-        .wi = { good ? wi.x : 0, good ? wi.y : 0, good ? wi.z : 0 },
-        .pdf = good ? p : 0,
-        .shape = good ? weight : 0,
-        .cos_d = good ? fm_min(cos_d, 1) : 1,
+        .wi = { good ? s.wi.x : 0, good ? s.wi.y : 0, good ? s.wi.z : 0 },
+        .pdf = good ? s.pdf : 0,
+        .shape = good ? s.shape : 0,
+        .cos_d = good ? fm_min(s.cos_d, 1) : 1,
     };
 }
 
@@ -258,17 +265,29 @@ LANES static void density_lanes(const struct roughconductor *m, size_t n,
         density_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, wi, l, p);
 }
 
+INLINE void draw_put(struct lanes *l, size_t i, struct draw s)
+{
+    l->x[i] = s.wi.x, l->y[i] = s.wi.y, l->z[i] = s.wi.z;
+    l->pdf[i] = s.pdf, l->shape[i] = s.shape, l->cos_d[i] = s.cos_d;
+}
+
 INLINE void draw_loop(const struct roughconductor *m, struct facets facets,
                       size_t n, struct dirs wo, struct lanes *l)
 {
     LANES_LOOP
     for (size_t i = 0; i < n; i++) {
         const struct vec3 h = { l->hx[i], l->hy[i], l->hz[i] };
-        const struct draw s =
-            draw_at(m, facets, dirs_at(wo, i), h, l->lo[i], l->visible[i]);
-        l->x[i] = s.wi.x, l->y[i] = s.wi.y, l->z[i] = s.wi.z;
-        l->pdf[i] = s.pdf, l->shape[i] = s.shape, l->cos_d[i] = s.cos_d;
+        draw_put(
+            l, i,
+            draw_at(m, facets, dirs_at(wo, i), h, l->lo[i], l->visible[i]));
     }
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        draw_put(l, i,
+                 draw_kept((struct draw){ { l->x[i], l->y[i], l->z[i] },
+                                          l->pdf[i],
+                                          l->shape[i],
+                                          l->cos_d[i] }));
 }
 
 LANES static void draw_lanes(const struct roughconductor *m, size_t n,

@@ -47,11 +47,9 @@ static void draw(const struct subject *s, struct rng rng, uint64_t from,
                  size_t n, struct bsdf_sample *out)
 {
     double wx[BATCH], wy[BATCH], wz[BATCH], x[BATCH], y[BATCH], z[BATCH];
-    for (size_t i = 0; i < n; i++) {
-        const struct vec3 u = rng_uniform(rng, from + i);
-        x[i] = u.x, y[i] = u.y, z[i] = u.z;
+    rng_uniform_many(rng, from, n, x, y, z);
+    for (size_t i = 0; i < n; i++)
         wx[i] = s->wo.x, wy[i] = s->wo.y, wz[i] = s->wo.z;
-    }
     bsdf_sample_many(s->bsdf, n, (struct dirs){ wx, wy, wz },
                      (struct dirs){ x, y, z }, out);
 }
