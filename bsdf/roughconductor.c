@@ -199,7 +199,8 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
                               ? facets_visible(m->facets, wo, u.x, u.y)
                               : facets_all(m->facets, u.x, u.y);
     const double lo = facets_lambda(m->facets, wo);
-    const struct draw s = draw_at(m, m->facets, wo, h, lo, g1_per_cos(wo, lo));
+    const struct draw s =
+        draw_kept(draw_at(m, m->facets, wo, h, lo, g1_per_cos(wo, lo)));
     return (struct bsdf_sample){
         .wi = s.wi,
         .pdf = s.pdf,
