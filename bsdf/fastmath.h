@@ -148,6 +148,30 @@ FM void fm_sincos_turns(double x, double *sine, double *cosine)
     *cosine = fm_double(((bc & ~odd) | (bs & odd)) ^ ((quarter + 1) & 2) << 62);
 }
 
+static const double fm_atan_c[] = {
+    -0x1.5555555555555p-2, 0x1.9999999999953p-3,  -0x1.249249248d7e6p-3,
+    0x1.c71c71c3045bap-4,  -0x1.745d165de250bp-4, 0x1.3b1392d7e8f74p-4,
+    -0x1.110e87e6a8722p-4, 0x1.e19a10824a50bp-5,  -0x1.ac7a7bd8f05c0p-5,
+    0x1.74dd67f0d3109p-5,  -0x1.1b32a3266af2ep-5, 0x1.0ad10221730d6p-6,
+};
+/** The angle of (x, y) from x toward y, in (-pi, pi], as atan2(y, x) has it,
+ * for finite x and y that are not both below 2^-1022: 2 units. */
+FM double fm_atan2(double y, double x)
+{
+    const double ax = fabs(x), ay = fabs(y);
+    const double small = fm_min(ax, ay), large = ax < ay ? ay : ax;
+    /* Beyond pi / 8, from the diagonal. */
+    const bool far = small > 0.41421356237309503 * large;
+    const double over = far ? small - large : small;
+    const double under = far ? small + large : large;
+    const double t = over / fm_max(under, 0x1p-1022), z = t * t, z2 = z * z;
+    const double tail = fm_poly8(z, fm_atan_c) +
+                        fm_poly4(z, fm_atan_c + 8) * ((z2 * z2) * (z2 * z2));
+    const double near = (far ? PI / 4 : 0) + (t + t * (z * tail));
+    const double quarter = ax < ay ? PI / 2 - near : near;
+    return copysign(x < 0 ? PI - quarter : quarter, y);
+}
+
 static const double fm_erfcx_c[] = {
     0x1.2a2af19c1492fp-3,   -0x1.05cce4d22cfb0p-3,  0x1.9220d8dc4611ep-4,
     -0x1.0bdcb780d895ep-4,  0x1.30cf6791b9b91p-5,   -0x1.2042cf161e7e7p-6,

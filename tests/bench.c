@@ -1,4 +1,4 @@
-/* bench.c - what the models, a chi-square and the masses of bins cost
+/* bench.c - what the models, chi-squares and the masses of bins cost
  *
  * One thread; medians of several runs, in which what is compared takes turns.
  * Ratios come first, as they can be compared between machines.
@@ -8,6 +8,8 @@
  * timed, is a product of 16-point Gauss-Legendre rules that quarters a bin
  * until it agrees with its quarters, and shares nothing with
  * validate/quadrature.c.
+ *
+ * The baseline of a chi-square on 51 x 102 bins is tests/baseline_simpson.c.
  */
 #include <gsl/gsl_integration.h>
 #include <stdio.h>
@@ -15,6 +17,9 @@
 #include <string.h>
 #include <time.h>
 
+#include "bsdf/fastmath.h"
+#include "bsdf/lanes.h"
+#include "tests/baseline_simpson.h"
 #include "validate/checks.h"
 
 enum {
@@ -24,7 +29,12 @@ enum {
     CHI2_RUNS = 5,
     MASS_RUNS = 15
 };
-enum { OPS = 3, MODELS = 4, LOBES = 2 };
+enum { OPS = 3, MODELS = 4, LOBES = 2, GRIDS = 2 };
+
+/* Of a chi-square on a grid, and of evaluations of a pdf. */
+enum { STRIPS = 51, SLICES = 102, CELLS = STRIPS * SLICES };
+enum { GRID_SAMPLES = 1000000, GRID_RUNS = 5, PDFS = 320000 };
+static const double goal_ratio = 8, goal_pdf_ns = 4.5;
 
 static const struct bands bands = { .count = 3, .nm = { 614, 549, 466 } };
 
@@ -423,12 +433,179 @@ static struct masses time_masses(const struct bsdf *b)
     return m;
 }
 
+/* -- a chi-square on a grid -------------------------------------------------
+ */
+
+#define METAL "roughconductor:eta=0.29/0.32/0.36,k=2.7/2.3/1.8,alpha=0.25,"
+
+static const struct {
+    const char *name, *spec;
+    enum baseline_kind kind;
+} grids[GRIDS] = {
+    { "beckmann, all normals", METAL "sample_visible=false",
+      BASELINE_BECKMANN_ALL },
+    { "ggx, visible normals", METAL "distribution=ggx", BASELINE_GGX_VISIBLE },
+};
+
+struct grid_test {
+    double sampling, integrating; /* [ms] */
+    double statistic, weight;     /* chi-square, mean over samples and bands */
+    long degrees;
+};
+
+struct grid_tests {
+    struct grid_test usual, ours;
+};
+
+static struct grid_test grid_usual(int kind, double theta)
+{
+    static long counts[CELLS];
+    static double mass[CELLS];
+    const struct baseline b = { .kind = grids[kind].kind,
+                                .alpha = 0.25F,
+                                .eta = { 0.29F, 0.32F, 0.36F },
+                                .k = { 2.7F, 2.3F, 1.8F },
+                                .theta = (float)theta };
+    struct grid_test t;
+    memset(counts, 0, sizeof counts);
+    const double start = seconds();
+    t.weight = baseline_sample(&b, 1, GRID_SAMPLES, STRIPS, SLICES, counts);
+    const double middle = seconds();
+    baseline_integrate(&b, STRIPS, SLICES, mass);
+    t.statistic =
+        chi_square_pooled(counts, mass, CELLS, GRID_SAMPLES, &t.degrees);
+    t.sampling = (middle - start) * 1e3;
+    t.integrating = (seconds() - middle) * 1e3;
+    return t;
+}
+
+/* The cell of each direction, CELLS where there is none. */
+LANES static void cells(const double *x, const double *y, const double *z,
+                        const double *pdf, int *cell)
+{
+    LANES_LOOP
+    for (int i = 0; i < BATCH; i++) {
+        const double r = sqrt(x[i] * x[i] + y[i] * y[i]);
+        const double theta = fm_atan2(r, z[i]), phi = fm_atan2(y[i], x[i]);
+        const double strip = theta * (STRIPS / PI);
+        const double slice =
+            (phi < 0 ? phi + 2 * PI : phi) * (SLICES / (2 * PI));
+        const int row = (int)fm_min(strip, STRIPS - 1);
+        const int column = (int)fm_min(slice, SLICES - 1);
+        cell[i] = pdf[i] > 0 ? row * SLICES + column : CELLS;
+    }
+}
+
+static double grid_sample(const struct bsdf *b, struct vec3 wo, long *counts)
+{
+    static double u[3][BATCH], o[3][BATCH], w[3][BATCH], pdf[BATCH];
+    struct bsdf_sample s[BATCH];
+    int cell[BATCH];
+    double sum = 0;
+    for (int i = 0; i < BATCH; i++)
+        o[0][i] = wo.x, o[1][i] = wo.y, o[2][i] = wo.z;
+    for (uint64_t at = 0; at < GRID_SAMPLES; at += BATCH) {
+        const size_t n = at + BATCH > GRID_SAMPLES ? (size_t)(GRID_SAMPLES - at)
+                                                   : (size_t)BATCH;
+        rng_uniform_many((struct rng){ 1, 9 }, at, BATCH, u[0], u[1], u[2]);
+        bsdf_sample_many(b, n, (struct dirs){ o[0], o[1], o[2] },
+                         (struct dirs){ u[0], u[1], u[2] }, s);
+        for (size_t i = 0; i < n; i++) {
+            w[0][i] = s[i].wi.x, w[1][i] = s[i].wi.y, w[2][i] = s[i].wi.z;
+            pdf[i] = s[i].pdf;
+            sum +=
+                s[i].weight.band[0] + s[i].weight.band[1] + s[i].weight.band[2];
+        }
+        cells(w[0], w[1], w[2], pdf, cell);
+        for (size_t i = 0; i < n; i++)
+            counts[cell[i]]++;
+    }
+    return sum / (3.0 * GRID_SAMPLES);
+}
+
+static void grid_integrate(const struct lobe *l, double *mass)
+{
+    long budget = mass_budget;
+    for (int i = 0; i < STRIPS; i++)
+        for (int k = 0; k < SLICES; k++) {
+            struct estimate e = { 0, 0 };
+            patch_integrate(pdf_at, l, 1,
+                            (struct patch){ i * PI / STRIPS,
+                                            (i + 1) * PI / STRIPS,
+                                            k * 2 * PI / SLICES,
+                                            (k + 1) * 2 * PI / SLICES },
+                            mass_tolerance, &budget, NULL, 0, &e);
+            mass[i * SLICES + k] = e.value;
+        }
+}
+
+static struct grid_test grid_ours(const struct bsdf *b, struct vec3 wo)
+{
+    static long counts[CELLS + 1];
+    static double mass[CELLS];
+    long evaluations = 0;
+    struct grid_test t;
+    memset(counts, 0, sizeof counts);
+    const double start = seconds();
+    t.weight = grid_sample(b, wo, counts);
+    const double middle = seconds();
+    grid_integrate(&(struct lobe){ b, wo, &evaluations }, mass);
+    t.statistic =
+        chi_square_pooled(counts, mass, CELLS, GRID_SAMPLES, &t.degrees);
+    t.sampling = (middle - start) * 1e3;
+    t.integrating = (seconds() - middle) * 1e3;
+    return t;
+}
+
+/* Both in turns; seen from 45 degrees. */
+static struct grid_tests time_grid(int kind)
+{
+    double time[4][GRID_RUNS];
+    struct grid_tests t;
+    struct bsdf *b = make(grids[kind].spec);
+    for (int run = 0; run < GRID_RUNS; run++) {
+        t.usual = grid_usual(kind, PI / 4);
+        t.ours = grid_ours(b, dir_from_degrees(45, 0));
+        time[0][run] = t.usual.sampling, time[1][run] = t.usual.integrating;
+        time[2][run] = t.ours.sampling, time[3][run] = t.ours.integrating;
+    }
+    t.usual.sampling = median(time[0], GRID_RUNS);
+    t.usual.integrating = median(time[1], GRID_RUNS);
+    t.ours.sampling = median(time[2], GRID_RUNS);
+    t.ours.integrating = median(time[3], GRID_RUNS);
+    bsdf_free(b);
+    return t;
+}
+
+/* Of a pdf in batches, seen from 30 degrees [ns]. */
+static double time_pdf(const struct bsdf *b)
+{
+    static struct inputs in;
+    double time[RUNS], pdf[BATCH];
+    fill(&in, b);
+    for (size_t i = 0; i < DIRECTIONS; i++) {
+        const struct vec3 wo = dir_from_degrees(30, 0);
+        put(in.wo, i, wo);
+        put(in.wi, i, bsdf_sample(b, wo, dirs_at(from(in.u, 0), i)).wi);
+    }
+    for (int run = 0; run < RUNS; run++) {
+        const double start = seconds();
+        for (size_t at = 0; at < PDFS; at += BATCH)
+            bsdf_pdf_many(b, BATCH, from(in.wo, at % DIRECTIONS),
+                          from(in.wi, at % DIRECTIONS), pdf);
+        time[run] = seconds() - start;
+    }
+    return median(time, RUNS) / PDFS * 1e9;
+}
+
 /* -- the report ------------------------------------------------------------ */
 
 struct results {
     struct calls calls[MODELS][OPS];
     double chi2[MODELS]; /* [ms] */
     struct masses masses[LOBES];
+    double pdf[LOBES]; /* [ns] */
+    struct grid_tests grid[GRIDS];
 };
 
 static void print_machine(void)
@@ -464,7 +641,17 @@ static void print_ratios(const struct results *r)
         for (int op = 0; op < OPS; op++)
             printf("%12.2f", r->calls[m][op].one / r->calls[m][op].many);
     }
-    printf("\n%-42s%12s\n", "chi-square / drawing its samples", "time");
+    printf("\n%-42s%12s%12s%12s\n", "usual chi-square / ours, 51 x 102 bins",
+           "samples", "masses", "both");
+    for (int k = 0; k < GRIDS; k++) {
+        const struct grid_test *a = &r->grid[k].usual, *b = &r->grid[k].ours;
+        printf("  %-40s%12.2f%12.2f%12.2f  (goal: at least %g)\n",
+               grids[k].name, a->sampling / b->sampling,
+               a->integrating / b->integrating,
+               (a->sampling + a->integrating) / (b->sampling + b->integrating),
+               goal_ratio);
+    }
+    printf("%-42s%12s\n", "chi-square / drawing its samples", "time");
     for (int m = 0; m < MODELS; m++)
         printf("  %-40s%12.2f\n", models[m].name,
                r->chi2[m] /
@@ -496,6 +683,23 @@ static void print_times(const struct results *r)
     }
     printf("\n  %s\n", same ? "both give the same, to the last bit"
                             : "THE TWO DIFFER, which they must not");
+    printf("pdf in batches, alpha .005, one wo at 30 degrees, %d calls\n",
+           PDFS);
+    for (int k = 0; k < LOBES; k++)
+        printf("  %-40s%7.2f ns  (goal: at most %g)\n", lobes[k].name,
+               r->pdf[k], goal_pdf_ns);
+    printf("chi-square of %.0g samples on %d x %d bins, alpha .25, at 45 "
+           "degrees\n  %-22s%14s%14s%14s%22s\n",
+           (double)GRID_SAMPLES, STRIPS, SLICES, "", "samples, ms",
+           "masses, ms", "mean weight", "chi-square / degrees");
+    for (int k = 0; k < GRIDS; k++) {
+        const struct grid_test *t[] = { &r->grid[k].usual, &r->grid[k].ours };
+        for (int i = 0; i < 2; i++)
+            printf("  %-22s%14.1f%14.1f%14.4f%15.0f /%5ld%s\n",
+                   i ? "" : grids[k].name, t[i]->sampling, t[i]->integrating,
+                   t[i]->weight, t[i]->statistic, t[i]->degrees,
+                   i ? "  ours" : "  usual");
+    }
     printf("chi-square of %.0g samples, at 45 degrees\n",
            (double)plan_default.samples);
     for (int m = 0; m < MODELS; m++)
@@ -534,8 +738,11 @@ int main(void)
     for (int k = 0; k < LOBES; k++) {
         struct bsdf *b = make(lobes[k].spec);
         r.masses[k] = time_masses(b);
+        r.pdf[k] = time_pdf(b);
         bsdf_free(b);
     }
+    for (int k = 0; k < GRIDS; k++)
+        r.grid[k] = time_grid(k);
     print_ratios(&r);
     print_times(&r);
     return 0;

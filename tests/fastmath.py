@@ -10,7 +10,7 @@ the polynomial is for, on a fine grid and before rounding.
 
 Needs mpmath (PyPI).
 """
-from mpmath import (mp, mpf, cos, sin, exp, expm1, log, pi, sqrt, erfc, nstr)
+from mpmath import (mp, mpf, atan, cos, sin, exp, expm1, log, pi, sqrt, erfc, nstr)
 
 mp.dps = 50
 
@@ -82,6 +82,11 @@ def cos_tail(z):
     return (cos(sqrt(z)) - 1 + z / 2) / z ** 2 if z else mpf(1) / 24
 
 
+def atan_tail(z):
+    t = sqrt(z)
+    return (atan(t) / t - 1) / z if z else -mpf(1) / 3
+
+
 K_ERFCX = mpf('3.75')
 
 
@@ -129,6 +134,9 @@ def main():
     show('cos', powers(cos_tail, mpf(0), z, 6),
          lambda x, p: 1 - x / 2 + x * x * (cos_tail(x) if p is None else p),
          mpf(0), z)
+    z = mpf('0.17158')  # tan(pi / 8)^2
+    show('atan', powers(atan_tail, mpf(0), z, 12),
+         lambda x, p: 1 + x * (atan_tail(x) if p is None else p), mpf(0), z)
     one = mpf(1)
     show('erfcx', powers(erfcx_scaled, -one, one, 24),
          lambda t, p: erfcx_scaled(t) if p is None else p, -one, one)
