@@ -61,6 +61,13 @@ TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 BENCH    := $(wildcard tests/bench*.c)
 HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(BENCH),$(wildcard tests/*.c))
 
+# Loops over lanes, which see more of the registers with -O3.
+ifeq ($(config),release)
+LANED    := $(patsubst %,$(B)/obj/bsdf/%.o,diffuse facets roughconductor \
+              roughdielectric)
+$(LANED): FLAGS += -O3
+endif
+
 objects   = $(patsubst %.c,$(B)/obj/%.o,$(1))
 libof     = $(B)/lib$(1).a
 # Each library before those that it uses.

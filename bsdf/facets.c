@@ -20,10 +20,17 @@ bool dirs_same(size_t n, struct dirs w)
     return !(differences(n, w.x) | differences(n, w.y) | differences(n, w.z));
 }
 
-static void fill(size_t n, double *x)
+LANES static void fill(size_t n, double *x)
 {
+    const double first = x[0];
+    LANES_LOOP
     for (size_t i = 1; i < n; i++)
-        x[i] = x[0];
+        x[i] = first;
+}
+
+void facets_fill(size_t n, double *x)
+{
+    fill(n, x);
 }
 
 INLINE void lambdas(struct facets f, size_t n, struct dirs w, double *lambda)
@@ -45,10 +52,7 @@ LANES static void lambda_lanes(struct facets f, size_t n, struct dirs w,
 void facets_lambda_many(struct facets f, size_t n, struct dirs w,
                         double *lambda)
 {
-    const bool one = dirs_same(n, w);
-    lambda_lanes(f, one ? 1 : n, w, lambda);
-    if (one)
-        fill(n, lambda);
+    lambda_lanes(f, n, w, lambda);
 }
 
 INLINE void all(struct facets f, size_t n, struct dirs u, double *mx,

@@ -131,8 +131,10 @@ static inline struct vec3 facets_visible(struct facets f, struct vec3 w,
 }
 
 /** Whether all directions have the bits of the first; n at least 1.  What
- * depends on such a direction alone need be computed but once. */
+ * depends on such a direction alone need be computed but once, as of n = 1, and
+ * be filled in from there. */
 bool dirs_same(size_t n, struct dirs w);
+void facets_fill(size_t n, double *x);
 
 /** Lambda of n directions, n <= LANES_MAX. */
 void facets_lambda_many(struct facets f, size_t n, struct dirs w,

@@ -22,6 +22,6 @@
 #define INLINE static inline __attribute__((always_inline, unused))
 
 /** As many at a time as fit the first cache, some dozens of numbers each. */
-enum { LANES_MAX = 64 };
+enum { LANES_MAX = 128 };
 
 #endif

@@ -226,6 +226,19 @@ LANES static void g1_lanes(size_t n, struct dirs wo, struct lanes *l)
         l->visible[i] = g1_per_cos(dirs_at(wo, i), l->lo[i]);
 }
 
+/* What depends on wo alone, once if there is but one. */
+static void look(const struct roughconductor *m, size_t n, struct dirs wo,
+                 struct lanes *l)
+{
+    const bool one = dirs_same(n, wo);
+    facets_lambda_many(m->facets, one ? 1 : n, wo, l->lo);
+    g1_lanes(one ? 1 : n, wo, l);
+    if (one) {
+        facets_fill(n, l->lo);
+        facets_fill(n, l->visible);
+    }
+}
+
 INLINE void shape_loop(const struct roughconductor *m, struct facets facets,
                        size_t n, struct dirs wo, struct dirs wi,
                        struct lanes *l)
@@ -337,7 +350,7 @@ static void eval_many(const void *state, size_t n, struct dirs wo,
     for (size_t at = 0, k; at < n; at += k) {
         const struct dirs o = dirs_from(wo, at), i = dirs_from(wi, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
-        facets_lambda_many(m->facets, k, o, l.lo);
+        look(m, k, o, &l);
         shape_lanes(m, k, o, i, &l);
         tint_lanes(m, k, &l);
         for (size_t lane = 0; lane < k; lane++)
@@ -353,8 +366,7 @@ static void pdf_many(const void *state, size_t n, struct dirs wo,
     for (size_t at = 0, k; at < n; at += k) {
         const struct dirs o = dirs_from(wo, at), i = dirs_from(wi, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
-        facets_lambda_many(m->facets, k, o, l.lo);
-        g1_lanes(k, o, &l);
+        look(m, k, o, &l);
         density_lanes(m, k, o, i, &l, p + at);
     }
 }
@@ -367,8 +379,7 @@ static void sample_many(const void *state, size_t n, struct dirs wo,
     for (size_t at = 0, k; at < n; at += k) {
         const struct dirs o = dirs_from(wo, at), v = dirs_from(u, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
-        facets_lambda_many(m->facets, k, o, l.lo);
-        g1_lanes(k, o, &l);
+        look(m, k, o, &l);
         if (m->sample_visible)
             facets_visible_many(m->facets, k, o, v, l.hx, l.hy, l.hz);
         else

@@ -33,7 +33,8 @@ enum { OPS = 3, MODELS = 4, LOBES = 2, GRIDS = 2 };
 
 /* Of a chi-square on a grid, and of evaluations of a pdf. */
 enum { STRIPS = 51, SLICES = 102, CELLS = STRIPS * SLICES };
-enum { GRID_SAMPLES = 1000000, GRID_RUNS = 5, PDFS = 320000 };
+enum { GRID_SAMPLES = 1000000, GRID_ORDER = 6, GRID_RUNS = 5 };
+enum { PDFS = 320000 };
 static const double goal_ratio = 8, goal_pdf_ns = 4.5;
 
 static const struct bands bands = { .count = 3, .nm = { 614, 549, 466 } };
@@ -283,12 +284,12 @@ static struct rule trapezoid(void)
     return r;
 }
 
-static struct rule gauss(void)
+static struct rule gauss(size_t nodes)
 {
-    struct rule r = { .nodes = GAUSS };
+    struct rule r = { .nodes = nodes };
     gsl_integration_glfixed_table *t =
-        or_exit(gsl_integration_glfixed_table_alloc(GAUSS), "out of memory");
-    for (size_t i = 0; i < GAUSS; i++)
+        or_exit(gsl_integration_glfixed_table_alloc(nodes), "out of memory");
+    for (size_t i = 0; i < nodes; i++)
         gsl_integration_glfixed_point(0, 1, i, &r.x[i], &r.weight[i], t);
     gsl_integration_glfixed_table_free(t);
     return r;
@@ -360,7 +361,7 @@ struct masses {
 static double *reference_masses(const struct partition *p, struct lobe l,
                                 double *total)
 {
-    const struct rule rule = gauss();
+    const struct rule rule = gauss(GAUSS);
     double *mass =
         or_exit(malloc(partition_bins(p) * sizeof *mass), "out of memory");
     *total = 0;
@@ -450,6 +451,7 @@ static const struct {
 struct grid_test {
     double sampling, integrating; /* [ms] */
     double statistic, weight;     /* chi-square, mean over samples and bands */
+    double error;                 /* the largest of a mass, of ours */
     long degrees;
 };
 
@@ -523,37 +525,73 @@ static double grid_sample(const struct bsdf *b, struct vec3 wo, long *counts)
     return sum / (3.0 * GRID_SAMPLES);
 }
 
-static void grid_integrate(const struct lobe *l, double *mass)
+/* Six Gauss-Legendre points each way in every bin; strip by strip, as the
+ * sines of phi are the same in each. */
+static void grid_integrate(const struct bsdf *b, struct vec3 wo, double *mass)
 {
-    long budget = mass_budget;
-    for (int i = 0; i < STRIPS; i++)
-        for (int k = 0; k < SLICES; k++) {
-            struct estimate e = { 0, 0 };
-            patch_integrate(pdf_at, l, 1,
-                            (struct patch){ i * PI / STRIPS,
-                                            (i + 1) * PI / STRIPS,
-                                            k * 2 * PI / SLICES,
-                                            (k + 1) * 2 * PI / SLICES },
-                            mass_tolerance, &budget, NULL, 0, &e);
-            mass[i * SLICES + k] = e.value;
-        }
+    enum { ROW = SLICES * GRID_ORDER, ROUNDED = (ROW / BATCH + 1) * BATCH };
+    static double c[ROW], s[ROW], o[3][ROUNDED], w[3][ROUNDED], pdf[ROUNDED];
+    const struct rule rule = gauss(GRID_ORDER);
+    memset(mass, 0, CELLS * sizeof *mass);
+    for (int i = 0; i < ROUNDED; i++)
+        o[0][i] = wo.x, o[1][i] = wo.y, o[2][i] = wo.z;
+    for (int k = 0; k < ROW; k++) {
+        const double phi =
+            2 * PI / SLICES * (k / GRID_ORDER + rule.x[k % GRID_ORDER]);
+        c[k] = cos(phi), s[k] = sin(phi);
+    }
+    for (int i = 0; i < STRIPS * GRID_ORDER; i++) {
+        const double theta =
+            PI / STRIPS * (i / GRID_ORDER + rule.x[i % GRID_ORDER]);
+        const double sine = sin(theta), cosine = cos(theta);
+        for (int k = 0; k < ROW; k++)
+            w[0][k] = sine * c[k], w[1][k] = sine * s[k], w[2][k] = cosine;
+        bsdf_pdf_many(b, ROW, (struct dirs){ o[0], o[1], o[2] },
+                      (struct dirs){ w[0], w[1], w[2] }, pdf);
+        const double scale = rule.weight[i % GRID_ORDER] * sine *
+                             (PI / STRIPS) * (2 * PI / SLICES);
+        double *row = mass + i / GRID_ORDER * SLICES;
+        for (int k = 0; k < ROW; k++)
+            row[k / GRID_ORDER] += scale * rule.weight[k % GRID_ORDER] * pdf[k];
+    }
 }
 
-static struct grid_test grid_ours(const struct bsdf *b, struct vec3 wo)
+/* The largest error of a mass, not timed. */
+static double grid_error(const struct bsdf *b, struct vec3 wo,
+                         const double *mass)
+{
+    const struct rule rule = gauss(GAUSS);
+    long evaluations = 0;
+    const struct lobe l = { b, wo, &evaluations };
+    double most = 0;
+    for (int i = 0; i < CELLS; i++) {
+        const int row = i / SLICES, column = i % SLICES;
+        const struct patch bin = { row * PI / STRIPS, (row + 1) * PI / STRIPS,
+                                   column * 2 * PI / SLICES,
+                                   (column + 1) * 2 * PI / SLICES };
+        const double truth =
+            refined(&rule, &l, bin, product(&rule, &l, bin), 6);
+        most = fmax(most, fabs(mass[i] - truth));
+    }
+    return most;
+}
+
+static struct grid_test grid_ours(const struct bsdf *b, struct vec3 wo,
+                                  bool check)
 {
     static long counts[CELLS + 1];
     static double mass[CELLS];
-    long evaluations = 0;
     struct grid_test t;
     memset(counts, 0, sizeof counts);
     const double start = seconds();
     t.weight = grid_sample(b, wo, counts);
     const double middle = seconds();
-    grid_integrate(&(struct lobe){ b, wo, &evaluations }, mass);
+    grid_integrate(b, wo, mass);
     t.statistic =
         chi_square_pooled(counts, mass, CELLS, GRID_SAMPLES, &t.degrees);
     t.sampling = (middle - start) * 1e3;
     t.integrating = (seconds() - middle) * 1e3;
+    t.error = check ? grid_error(b, wo, mass) : 0;
     return t;
 }
 
@@ -565,7 +603,7 @@ static struct grid_tests time_grid(int kind)
     struct bsdf *b = make(grids[kind].spec);
     for (int run = 0; run < GRID_RUNS; run++) {
         t.usual = grid_usual(kind, PI / 4);
-        t.ours = grid_ours(b, dir_from_degrees(45, 0));
+        t.ours = grid_ours(b, dir_from_degrees(45, 0), run == GRID_RUNS - 1);
         time[0][run] = t.usual.sampling, time[1][run] = t.usual.integrating;
         time[2][run] = t.ours.sampling, time[3][run] = t.ours.integrating;
     }
@@ -699,6 +737,8 @@ static void print_times(const struct results *r)
                    i ? "" : grids[k].name, t[i]->sampling, t[i]->integrating,
                    t[i]->weight, t[i]->statistic, t[i]->degrees,
                    i ? "  ours" : "  usual");
+        printf("  %-22slargest error of a mass, ours: %.1g\n", "",
+               r->grid[k].ours.error);
     }
     printf("chi-square of %.0g samples, at 45 degrees\n",
            (double)plan_default.samples);
