@@ -55,7 +55,7 @@ INLINE double facets_d(struct facets f, struct vec3 m, double m2)
     }
     /* Where P22 is 0, 1 / cos^4 may be infinite. */
     const double inverse = 1 / z2, slope2 = r2 * inverse;
-    const double t = slope2 > 746 ? 0 : m2 * inverse;
+    const double t = slope2 > 708 ? 0 : m2 * inverse;
     return beckmann_p22(slope2) * (t * t * per_area);
 }
 
