@@ -59,17 +59,18 @@ INLINE double facets_d(struct facets f, struct vec3 m, double m2)
     return beckmann_p22(slope2) * (t * t * per_area);
 }
 
-/** How long the horizontal part of w is where the roughness is 1. */
-INLINE double facets_sine(struct facets f, struct vec3 w)
+/** How long the horizontal part of w is where the roughness is 1, squared. */
+INLINE double facets_sine2(struct facets f, struct vec3 w)
 {
     const double x = f.alpha_u * w.x, y = f.alpha_v * w.y;
-    return sqrt(x * x + y * y);
+    return x * x + y * y;
 }
 
 INLINE double facets_lambda(struct facets f, struct vec3 w)
 {
-    const double a = fabs(w.z) / facets_sine(f, w);
-    return f.family == NDF_GGX ? ggx_lambda(a) : beckmann_lambda(a);
+    const double s2 = facets_sine2(f, w), z = fabs(w.z);
+    return f.family == NDF_GGX ? ggx_lambda_of(s2, z)
+                               : beckmann_lambda(z / sqrt(s2));
 }
 
 /** A normal with density D(m) m.z per solid angle, of any length. */
@@ -94,7 +95,8 @@ struct facets_view {
 
 INLINE struct facets_view facets_view(struct facets f, struct vec3 w)
 {
-    const double s = facets_sine(f, w), inverse = 1 / fm_max(s, 0x1p-1022);
+    const double s = sqrt(facets_sine2(f, w)),
+                 inverse = 1 / fm_max(s, 0x1p-1022);
     struct facets_view v = {
         s > 0 ? f.alpha_u * w.x * inverse : 1,
         f.alpha_v * w.y * inverse,

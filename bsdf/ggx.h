@@ -21,7 +21,14 @@ INLINE double ggx_p22(double r2)
     return 1 / (PI * (1 + r2) * (1 + r2));
 }
 
-/* Lambda, times 2 a (sqrt(1 + a^2) + a) over itself: nothing cancels. */
+/* Lambda, times 2 a (sqrt(1 + a^2) + a) over itself, so that nothing cancels;
+ * from the tangent of the angle at unit roughness as the root of r2 over z, as
+ * that needs no root of r2. */
+INLINE double ggx_lambda_of(double r2, double z)
+{
+    return r2 / (2 * z * (sqrt(r2 + z * z) + z));
+}
+
 INLINE double ggx_lambda(double a)
 {
     return 1 / (2 * a * (sqrt(1 + a * a) + a));

@@ -175,7 +175,7 @@ static void angles_are_close_all_around(void **state)
         const double x = size * (2 * u.x - 1), y = (2 * u.y - 1);
         worst = fmax(worst, units(fm_atan2(y, x), atan2l(y, x)));
     }
-    assert_at_most(worst, 2);
+    assert_at_most(worst, 3);
     assert_true(fm_atan2(0, 1) == 0 && fm_atan2(0, -1) == PI);
     assert_true(fm_atan2(1, 0) == PI / 2 && fm_atan2(-1, 0) == -PI / 2);
     assert_true(fm_atan2(0, 0) == 0);
@@ -204,7 +204,7 @@ static void ends_are_exact(void **state)
 int main(void)
 {
     static struct function e = {
-        exp_minus, exp_minus_l, 0, 708, 1e-30, 708, 1
+        exp_minus, exp_minus_l, 0, 708, 1e-30, 708, 1.1
     };
     static struct function l = { minus_log, minus_log_l, 0x1p-1022, 1,
                                  0x1p-1022, 1,           1 };
@@ -212,24 +212,24 @@ int main(void)
                                   0x1p-1022,   1 - 0x1p-53,   1 };
     static struct function s = { sine, sine_l, 0, 1, 1e-300, 1, 2 };
     static struct function c = { cosine, cosine_l, 0, 1, 1e-300, 1, 2 };
-    static struct function x = { erfcx, erfcx_l, 0, 40, 1e-30, 1e15, 4 };
-    static struct function far = { erfcx, erfcx_l, 30, 1e150, 1e3, 1e150, 4 };
-    static struct function t = { atan_below, atanl, 0, 1, 1e-300, 1, 2 };
+    static struct function x = { erfcx, erfcx_l, 0, 40, 1e-30, 1e15, 10 };
+    static struct function far = { erfcx, erfcx_l, 30, 1e150, 1e3, 1e150, 10 };
+    static struct function t = { atan_below, atanl, 0, 1, 1e-300, 1, 3 };
     const struct CMUnitTest tests[] = {
-        { "exp(-x) is within a unit", is_close, .initial_state = &e },
+        { "exp(-x) is within 1.1 units", is_close, .initial_state = &e },
         { "-log(x) is within a unit", is_close, .initial_state = &l },
         { "-log(1 - x) is within a unit", is_close, .initial_state = &l1 },
         { "the sine of turns is within two units", is_close,
           .initial_state = &s },
         { "the cosine of turns is within two units", is_close,
           .initial_state = &c },
-        { "exp(x^2) erfc(x) is within four units", is_close,
+        { "exp(x^2) erfc(x) is within ten units", is_close,
           .initial_state = &x },
-        { "exp(x^2) erfc(x) is within four units far out", is_close,
+        { "exp(x^2) erfc(x) is within ten units far out", is_close,
           .initial_state = &far },
-        { "the arc tangent is within two units", is_close,
+        { "the arc tangent is within three units", is_close,
           .initial_state = &t },
-        { "angles are within two units all around",
+        { "angles are within three units all around",
           angles_are_close_all_around },
         { "the Gaussian quantile is within eight units", the_probit_is_close },
         { "ends are exact", ends_are_exact },
