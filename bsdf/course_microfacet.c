@@ -15,9 +15,9 @@
  * with D Beckmann's and F the write-up's approximation.  A direction sampled
  * below the horizon is refused.
  */
+#include "bsdf/facets.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/metal.h"
-#include "bsdf/ndf.h"
 #include "bsdf/types.h"
 
 enum { LAMBDA_COURSE, LAMBDA_EXACT };
@@ -96,20 +96,18 @@ static struct spectrum eval(const void *state, struct vec3 wo, struct vec3 wi)
     const struct course_microfacet *m = state;
     if (!(wo.z > 0 && wi.z > 0))
         return (struct spectrum){ { 0 } };
-    const struct vec3 sum = vec3_add(wo, wi); /* as long as 2 wi.h */
-    const double length = vec3_length(sum);
-    const struct vec3 h = vec3_scale(1 / length, sum);
-    return f(m, wi.z, length / 2, d(m, h) * g(m, wo, wi) / (4 * wo.z * wi.z));
+    double h2;
+    const struct vec3 h = facets_half(wo, wi, &h2);
+    return f(m, wi.z, sqrt(h2) / 2, d(m, h) * g(m, wo, wi) / (4 * wo.z * wi.z));
 }
 
 static double pdf(const void *state, struct vec3 wo, struct vec3 wi)
 {
     if (!(wo.z > 0 && wi.z > 0))
         return 0;
-    const struct vec3 sum = vec3_add(wo, wi);
-    const double length = vec3_length(sum);
-    const struct vec3 h = vec3_scale(1 / length, sum);
-    return d(state, h) * h.z / (2 * length);
+    double h2;
+    const struct vec3 h = facets_half(wo, wi, &h2);
+    return d(state, h) * h.z / (2 * h2);
 }
 
 static struct bsdf_sample sample(const void *state, struct vec3 wo,

@@ -6,6 +6,8 @@
  * W. Jakob and G. Humphreys, Physically Based Rendering, 4th ed., 2023,
  * sec. A.5.3, with the plain polar map of the disk.
  */
+#include "bsdf/fastmath.h"
+#include "bsdf/lanes.h"
 #include "bsdf/types.h"
 
 struct diffuse {
@@ -29,8 +31,8 @@ static struct bsdf_claims claims(const void *state, const struct bands *bands)
     };
 }
 
-static inline struct spectrum value(const struct diffuse *m, struct vec3 wo,
-                                    struct vec3 wi)
+INLINE struct spectrum value(const struct diffuse *m, struct vec3 wo,
+                             struct vec3 wi)
 {
     return spectrum_scale(wo.z > 0 && wi.z > 0 ? 1 / PI : 0, m->reflectance);
 }
@@ -48,23 +50,74 @@ static void eval_many(const void *state, size_t n, struct dirs wo,
         f[i] = value(&m, dirs_at(wo, i), dirs_at(wi, i));
 }
 
+INLINE double density(double wo_z, double wi_z)
+{
+    const double p = wo_z > 0 ? wi_z / PI : 0;
+    return wi_z > 0 ? p : 0;
+}
+
 static double pdf(const void *state, struct vec3 wo, struct vec3 wi)
 {
     (void)state;
-    return wo.z > 0 && wi.z > 0 ? wi.z / PI : 0;
+    return density(wo.z, wi.z);
+}
+
+LANES static void pdf_many(const void *state, size_t n, struct dirs wo,
+                           struct dirs wi, double *p)
+{
+    (void)state;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        p[i] = density(wo.z[i], wi.z[i]);
+}
+
+INLINE struct vec3 direction(struct vec3 u)
+{
+    const double r = sqrt(u.x);
+    double sine, cosine;
+    fm_sincos_turns(u.y, &sine, &cosine);
+    return (struct vec3){ r * cosine, r * sine, sqrt(1 - u.x) };
 }
 
 static struct bsdf_sample sample(const void *state, struct vec3 wo,
                                  struct vec3 u)
 {
     const struct diffuse *m = state;
-    const double r = sqrt(u.x), phi = 2 * PI * u.y;
-    const struct vec3 wi = { r * cos(phi), r * sin(phi), sqrt(1 - u.x) };
+    const struct vec3 wi = direction(u);
     if (!(wo.z > 0))
         return (struct bsdf_sample){ 0 };
     return (struct bsdf_sample){ .wi = wi,
-                                 .pdf = pdf(m, wo, wi),
+                                 .pdf = density(wo.z, wi.z),
                                  .weight = m->reflectance };
+}
+
+LANES static void direction_lanes(size_t n, struct dirs u, double *x, double *y,
+                                  double *z)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct vec3 w = direction(dirs_at(u, i));
+        x[i] = w.x, y[i] = w.y, z[i] = w.z;
+    }
+}
+
+static void sample_many(const void *state, size_t n, struct dirs wo,
+                        struct dirs u, struct bsdf_sample *s)
+{
+    const struct diffuse m = *(const struct diffuse *)state;
+    double x[LANES_MAX], y[LANES_MAX], z[LANES_MAX];
+    for (size_t at = 0, k; at < n; at += k) {
+        k = n - at < LANES_MAX ? n - at : LANES_MAX;
+        direction_lanes(k, dirs_from(u, at), x, y, z);
+        for (size_t i = 0; i < k; i++) {
+            const double cos_o = wo.z[at + i];
+            s[at + i] = cos_o > 0
+                            ? (struct bsdf_sample){ .wi = { x[i], y[i], z[i] },
+                                                    .pdf = density(cos_o, z[i]),
+                                                    .weight = m.reflectance }
+                            : (struct bsdf_sample){ 0 };
+        }
+    }
 }
 
 const struct bsdf_type type_diffuse = {
@@ -77,4 +130,6 @@ const struct bsdf_type type_diffuse = {
     .pdf = pdf,
     .sample = sample,
     .eval_many = eval_many,
+    .pdf_many = pdf_many,
+    .sample_many = sample_many,
 };

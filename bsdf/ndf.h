@@ -17,9 +17,12 @@
 
 #include "bsdf/vec.h"
 
+enum ndf_family { NDF_BECKMANN, NDF_GGX };
+
 /** A family, for unit roughness. */
 struct ndf {
     const char *name;
+    enum ndf_family family;
 
     double (*p22)(double r2);   /* density of slopes [1], r2 = squared slope */
     double (*lambda)(double a); /* a = 1 / tan(theta), in [0, inf] */

@@ -19,4 +19,8 @@ struct rng {
 /** Three numbers uniform in [0, 1), multiples of 2^-53. */
 struct vec3 rng_uniform(struct rng rng, uint64_t index);
 
+/** Those of n indices from the first on, an array a coordinate. */
+void rng_uniform_many(struct rng rng, uint64_t first, size_t n, double *x,
+                      double *y, double *z);
+
 #endif

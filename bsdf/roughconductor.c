@@ -14,9 +14,9 @@
  * [3] E. Heitz, Understanding the Masking-Shadowing Function in
  *     Microfacet-Based BRDFs, JCGT 3(2), 2014, eq. 99 (correlated G2).
  */
+#include "bsdf/facets.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/metal.h"
-#include "bsdf/ndf.h"
 #include "bsdf/roughness.h"
 #include "bsdf/types.h"
 
@@ -29,6 +29,7 @@ struct roughconductor {
     double alpha, alpha_u, alpha_v;
     int distribution, sample_visible, masking, fresnel;
     int bands;
+    struct facets facets;
 };
 
 static const char *const fresnels[] = { "exact", "approx", "schlick", NULL };
@@ -53,6 +54,8 @@ static bool init(void *state, const struct bands *bands, struct err *err)
     if (!metal_settle("roughconductor", m->material, &m->eta, &m->k, bands,
                       err))
         return false;
+    m->facets = facets_of(roughness_ndf[m->distribution]->family, m->alpha_u,
+                          m->alpha_v);
     m->bands = bands->count;
     for (int b = 0; b < m->bands; b++)
         m->r0.band[b] = fresnel_conductor(1, m->eta.band[b], m->k.band[b]);
@@ -67,78 +70,114 @@ static struct bsdf_claims claims(const void *state, const struct bands *bands)
                                  .eta = 1 };
 }
 
-static const struct ndf *ndf(const struct roughconductor *m)
+/* Both; written as one comparison, as gcc 12 makes vectors of that. */
+INLINE bool above(struct vec3 wo, struct vec3 wi)
 {
-    return roughness_ndf[m->distribution];
+    return (wo.z > 0 ? wi.z : 0) > 0;
 }
 
-static double lambda(const struct roughconductor *m, struct vec3 w)
+/* What a pdf of visible normals has of wo: G1(wo) / (4 cos_o). */
+INLINE double g1_per_cos(struct vec3 wo, double lo)
 {
-    return ndf_lambda(ndf(m), m->alpha_u, m->alpha_v, w);
+    return 1 / (4 * wo.z * (1 + lo));
 }
 
-static double d(const struct roughconductor *m, struct vec3 h)
+/* 1 / G2, from lambda(wo) and lambda(wi). */
+INLINE double per_g2(const struct roughconductor *m, double lo, double li)
 {
-    return ndf_d(ndf(m), m->alpha_u, m->alpha_v, h);
+    return m->masking == MASKING_CORRELATED ? 1 + lo + li : (1 + lo) * (1 + li);
 }
 
-/* From lambda(wo) and lambda(wi). */
-static double g2(const struct roughconductor *m, double lo, double li)
+/* f without F, from lambda(wo), and wi.h as half the length of wo + wi. */
+INLINE double shape(const struct roughconductor *m, struct facets facets,
+                    struct vec3 wo, struct vec3 wi, double lo, double *cos_d)
 {
-    return m->masking == MASKING_CORRELATED ? 1 / (1 + lo + li)
-                                            : 1 / ((1 + lo) * (1 + li));
+    double h2;
+    const struct vec3 h = facets_half(wo, wi, &h2);
+    const double li = facets_lambda(facets, wi);
+    const double f =
+        facets_d(facets, h, h2) / (4 * wo.z * wi.z * per_g2(m, lo, li));
+    const bool seen = above(wo, wi);
+    *cos_d = seen ? fm_min(sqrt(h2) / 2, 1) : 1;
+    return seen ? f : 0;
 }
 
-/* The model's F, with its factor, times a common one. */
-static struct spectrum tinted(const struct roughconductor *m, double cos_d,
-                              double common)
+/* From g1_per_cos, which is asked for visible normals alone. */
+INLINE double density(const struct roughconductor *m, struct facets facets,
+                      struct vec3 wo, struct vec3 wi, double visible)
+{
+    double h2;
+    const struct vec3 h = facets_half(wo, wi, &h2);
+    const double d = facets_d(facets, h, h2);
+    const double p = m->sample_visible ? d * visible : d * h.z / (2 * h2);
+    return above(wo, wi) ? p : 0;
+}
+
+/* A sample before F. */
+struct draw {
+    struct vec3 wi;
+    double pdf, shape, cos_d; /* weight = F(cos_d) shape */
+};
+
+/* By a facet with its normal along h, of any length. */
+INLINE struct draw draw_at(const struct roughconductor *m, struct facets facets,
+                           struct vec3 wo, struct vec3 h, double lo,
+                           double visible)
+{
+    const double length = 1 / vec3_length(h);
+    const struct vec3 n = vec3_scale(length, h);
+    const double cos_d = vec3_dot(wo, n);
+    const struct vec3 wi = vec3_unit_again(vec3_reflect(wo, n));
+    const double p = density(m, facets, wo, wi, visible);
+    const double per_g = per_g2(m, lo, facets_lambda(facets, wi));
+    /* f cos_i / pdf, with D divided out by hand. */
+    const double weight =
+        m->sample_visible ? (1 + lo) / per_g : cos_d / (wo.z * n.z * per_g);
+    return (struct draw){ wi, p, weight, cos_d };
+}
+
+/* All 0 where a draw is refused; p is 0 unless both are above. */
+INLINE struct draw draw_kept(struct draw s)
+{
+    const bool good = (s.cos_d > 0 ? s.pdf : 0) > 0;
+    return (struct draw){
+        .wi = { good ? s.wi.x : 0, good ? s.wi.y : 0, good ? s.wi.z : 0 },
+        .pdf = good ? s.pdf : 0,
+        .shape = good ? s.shape : 0,
+        .cos_d = good ? fm_min(s.cos_d, 1) : 1,
+    };
+}
+
+/* The model's F in one band, with its factor, times a common one. */
+INLINE double tinted(const struct roughconductor *m, int fresnel, int band,
+                     double cos_d, double common)
+{
+    const double eta = m->eta.band[band], k = m->k.band[band];
+    const double r = fresnel == EXACT ? fresnel_conductor(cos_d, eta, k)
+                     : fresnel == APPROX
+                         ? fresnel_conductor_approx(cos_d, eta, k)
+                         : fresnel_schlick(cos_d, m->r0.band[band]);
+    return common * m->specular_reflectance.band[band] * r;
+}
+
+static struct spectrum tinted_all(const struct roughconductor *m, double cos_d,
+                                  double common)
 {
     struct spectrum f = { { 0 } };
-    const double c = fmin(cos_d, 1);
-    for (int b = 0; b < m->bands; b++) {
-        const double eta = m->eta.band[b], k = m->k.band[b];
-        const double r = m->fresnel == EXACT ? fresnel_conductor(c, eta, k)
-                         : m->fresnel == APPROX
-                             ? fresnel_conductor_approx(c, eta, k)
-                             : fresnel_schlick(c, m->r0.band[b]);
-        f.band[b] = common * m->specular_reflectance.band[b] * r;
-    }
+    for (int b = 0; b < m->bands; b++)
+        f.band[b] = tinted(m, m->fresnel, b, cos_d, common);
     return f;
-}
-
-static bool above(struct vec3 wo, struct vec3 wi)
-{
-    return wo.z > 0 && wi.z > 0;
-}
-
-/* h, and wi.h as half the length of wo + wi. */
-static struct vec3 half(struct vec3 wo, struct vec3 wi, double *cos_d)
-{
-    const struct vec3 sum = vec3_add(wo, wi);
-    const double length = vec3_length(sum);
-    *cos_d = length / 2;
-    return vec3_scale(1 / length, sum);
 }
 
 static struct spectrum eval(const void *state, struct vec3 wo, struct vec3 wi)
 {
     const struct roughconductor *m = state;
+    double cos_d;
     if (!above(wo, wi))
         return (struct spectrum){ { 0 } };
-    double cos_d;
-    const struct vec3 h = half(wo, wi, &cos_d);
-    const double g = g2(m, lambda(m, wo), lambda(m, wi));
-    return tinted(m, cos_d, d(m, h) * g / (4 * wo.z * wi.z));
-}
-
-/* The pdf, from lambda(wo). */
-static double density(const struct roughconductor *m, struct vec3 wo,
-                      struct vec3 wi, double lo)
-{
-    double cos_d;
-    const struct vec3 h = half(wo, wi, &cos_d);
-    return m->sample_visible ? d(m, h) / (4 * wo.z * (1 + lo))
-                             : d(m, h) * h.z / (4 * cos_d);
+    const double lo = facets_lambda(m->facets, wo);
+    const double common = shape(m, m->facets, wo, wi, lo, &cos_d);
+    return tinted_all(m, cos_d, common);
 }
 
 static double pdf(const void *state, struct vec3 wo, struct vec3 wi)
@@ -146,47 +185,226 @@ static double pdf(const void *state, struct vec3 wo, struct vec3 wi)
     const struct roughconductor *m = state;
     if (!above(wo, wi))
         return 0;
-    return density(m, wo, wi, m->sample_visible ? lambda(m, wo) : 0);
+    const double lo = m->sample_visible ? facets_lambda(m->facets, wo) : 0;
+    return density(m, m->facets, wo, wi, g1_per_cos(wo, lo));
 }
 
-/* weight = f cos_i / pdf, with D divided out by hand. */
 static struct bsdf_sample sample(const void *state, struct vec3 wo,
                                  struct vec3 u)
 {
     const struct roughconductor *m = state;
-    const struct bsdf_sample refused = { 0 };
     if (!(wo.z > 0))
-        return refused;
-    const struct vec3 h =
-        m->sample_visible
-            ? ndf_sample_visible(ndf(m), m->alpha_u, m->alpha_v, wo, u.x, u.y)
-            : ndf_sample_all(ndf(m), m->alpha_u, m->alpha_v, u.x, u.y);
-    const double cos_d = vec3_dot(wo, h);
-    const struct vec3 wi = vec3_unit(vec3_reflect(wo, h));
-    if (!(cos_d > 0 && wi.z > 0))
-        return refused;
-    const double lo = lambda(m, wo), g = g2(m, lo, lambda(m, wi));
-    const double p = density(m, wo, wi, lo);
-    if (!(p > 0))
-        return refused;
+        return (struct bsdf_sample){ 0 };
+    const struct vec3 h = m->sample_visible
+                              ? facets_visible(m->facets, wo, u.x, u.y)
+                              : facets_all(m->facets, u.x, u.y);
+    const double lo = facets_lambda(m->facets, wo);
+    const struct draw s =
+        draw_kept(draw_at(m, m->facets, wo, h, lo, g1_per_cos(wo, lo)));
     return (struct bsdf_sample){
-        .wi = wi,
-        .pdf = p,
-        .weight =
-            tinted(m, cos_d,
-                   m->sample_visible ? g * (1 + lo) : g * cos_d / (wo.z * h.z)),
+        .wi = s.wi,
+        .pdf = s.pdf,
+        .weight = tinted_all(m, s.cos_d, s.shape),
     };
+}
+
+/* -- many at once: up to LANES_MAX lanes, by loops over parts of the above --
+ */
+
+struct lanes {
+    double lo[LANES_MAX], visible[LANES_MAX]; /* of wo: lambda, g1_per_cos */
+    double cos_d[LANES_MAX], shape[LANES_MAX];
+    double hx[LANES_MAX], hy[LANES_MAX], hz[LANES_MAX];
+    double x[LANES_MAX], y[LANES_MAX], z[LANES_MAX], pdf[LANES_MAX];
+    double band[BANDS_MAX][LANES_MAX];
+};
+
+LANES static void g1_lanes(size_t n, struct dirs wo, struct lanes *l)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        l->visible[i] = g1_per_cos(dirs_at(wo, i), l->lo[i]);
+}
+
+/* What depends on wo alone, once if there is but one. */
+static void look(const struct roughconductor *m, size_t n, struct dirs wo,
+                 struct lanes *l)
+{
+    const bool one = dirs_same(n, wo);
+    facets_lambda_many(m->facets, one ? 1 : n, wo, l->lo);
+    g1_lanes(one ? 1 : n, wo, l);
+    if (one) {
+        facets_fill(n, l->lo);
+        facets_fill(n, l->visible);
+    }
+}
+
+INLINE void shape_loop(const struct roughconductor *m, struct facets facets,
+                       size_t n, struct dirs wo, struct dirs wi,
+                       struct lanes *l)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        l->shape[i] = shape(m, facets, dirs_at(wo, i), dirs_at(wi, i), l->lo[i],
+                            &l->cos_d[i]);
+}
+
+LANES static void shape_lanes(const struct roughconductor *m, size_t n,
+                              struct dirs wo, struct dirs wi, struct lanes *l)
+{
+    if (m->facets.family == NDF_GGX)
+        shape_loop(m, facets_as(m->facets, NDF_GGX), n, wo, wi, l);
+    else
+        shape_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, wi, l);
+}
+
+INLINE void density_loop(const struct roughconductor *m, struct facets facets,
+                         size_t n, struct dirs wo, struct dirs wi,
+                         const struct lanes *l, double *p)
+{
+    const struct roughconductor copy = *m;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        p[i] = density(&copy, facets, dirs_at(wo, i), dirs_at(wi, i),
+                       l->visible[i]);
+}
+
+LANES static void density_lanes(const struct roughconductor *m, size_t n,
+                                struct dirs wo, struct dirs wi,
+                                const struct lanes *l, double *p)
+{
+    if (m->facets.family == NDF_GGX)
+        density_loop(m, facets_as(m->facets, NDF_GGX), n, wo, wi, l, p);
+    else
+        density_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, wi, l, p);
+}
+
+INLINE void draw_put(struct lanes *l, size_t i, struct draw s)
+{
+    l->x[i] = s.wi.x, l->y[i] = s.wi.y, l->z[i] = s.wi.z;
+    l->pdf[i] = s.pdf, l->shape[i] = s.shape, l->cos_d[i] = s.cos_d;
+}
+
+INLINE void draw_loop(const struct roughconductor *m, struct facets facets,
+                      size_t n, struct dirs wo, struct lanes *l)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct vec3 h = { l->hx[i], l->hy[i], l->hz[i] };
+        draw_put(
+            l, i,
+            draw_at(m, facets, dirs_at(wo, i), h, l->lo[i], l->visible[i]));
+    }
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        draw_put(l, i,
+                 draw_kept((struct draw){ { l->x[i], l->y[i], l->z[i] },
+                                          l->pdf[i],
+                                          l->shape[i],
+                                          l->cos_d[i] }));
+}
+
+LANES static void draw_lanes(const struct roughconductor *m, size_t n,
+                             struct dirs wo, struct lanes *l)
+{
+    if (m->facets.family == NDF_GGX)
+        draw_loop(m, facets_as(m->facets, NDF_GGX), n, wo, l);
+    else
+        draw_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, l);
+}
+
+INLINE void tint_loop(const struct roughconductor *m, int fresnel, size_t n,
+                      struct lanes *l)
+{
+    for (int b = 0; b < m->bands; b++)
+        LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        l->band[b][i] = tinted(m, fresnel, b, l->cos_d[i], l->shape[i]);
+}
+
+LANES static void tint_lanes(const struct roughconductor *m, size_t n,
+                             struct lanes *l)
+{
+    if (m->fresnel == EXACT)
+        tint_loop(m, EXACT, n, l);
+    else if (m->fresnel == APPROX)
+        tint_loop(m, APPROX, n, l);
+    else
+        tint_loop(m, SCHLICK, n, l);
+    for (int b = m->bands; b < BANDS_MAX; b++)
+        for (size_t i = 0; i < n; i++)
+            l->band[b][i] = 0;
+}
+
+static struct spectrum band_at(const struct lanes *l, size_t i)
+{
+    return (struct spectrum){ { l->band[0][i], l->band[1][i], l->band[2][i],
+                                l->band[3][i] } };
+}
+
+static void eval_many(const void *state, size_t n, struct dirs wo,
+                      struct dirs wi, struct spectrum *f)
+{
+    const struct roughconductor *m = state;
+    struct lanes l;
+    for (size_t at = 0, k; at < n; at += k) {
+        const struct dirs o = dirs_from(wo, at), i = dirs_from(wi, at);
+        k = n - at < LANES_MAX ? n - at : LANES_MAX;
+        look(m, k, o, &l);
+        shape_lanes(m, k, o, i, &l);
+        tint_lanes(m, k, &l);
+        for (size_t lane = 0; lane < k; lane++)
+            f[at + lane] = band_at(&l, lane);
+    }
+}
+
+static void pdf_many(const void *state, size_t n, struct dirs wo,
+                     struct dirs wi, double *p)
+{
+    const struct roughconductor *m = state;
+    struct lanes l;
+    for (size_t at = 0, k; at < n; at += k) {
+        const struct dirs o = dirs_from(wo, at), i = dirs_from(wi, at);
+        k = n - at < LANES_MAX ? n - at : LANES_MAX;
+        look(m, k, o, &l);
+        density_lanes(m, k, o, i, &l, p + at);
+    }
+}
+
+static void sample_many(const void *state, size_t n, struct dirs wo,
+                        struct dirs u, struct bsdf_sample *s)
+{
+    const struct roughconductor *m = state;
+    struct lanes l;
+    for (size_t at = 0, k; at < n; at += k) {
+        const struct dirs o = dirs_from(wo, at), v = dirs_from(u, at);
+        k = n - at < LANES_MAX ? n - at : LANES_MAX;
+        look(m, k, o, &l);
+        if (m->sample_visible)
+            facets_visible_many(m->facets, k, o, v, l.hx, l.hy, l.hz);
+        else
+            facets_all_many(m->facets, k, v, l.hx, l.hy, l.hz);
+        draw_lanes(m, k, o, &l);
+        tint_lanes(m, k, &l);
+        for (size_t i = 0; i < k; i++)
+            s[at + i] = (struct bsdf_sample){
+                .wi = { l.x[i], l.y[i], l.z[i] },
+                .pdf = l.pdf[i],
+                .weight = band_at(&l, i),
+            };
+    }
 }
 
 static double facet_d(const void *state, struct vec3 h)
 {
-    return d(state, h);
+    const struct roughconductor *m = state;
+    return h.z > 0 ? facets_d(m->facets, h, vec3_dot(h, h)) : 0;
 }
 
 static double facet_g1(const void *state, struct vec3 w)
 {
     const struct roughconductor *m = state;
-    return ndf_g1(ndf(m), m->alpha_u, m->alpha_v, w);
+    return 1 / (1 + facets_lambda(m->facets, w));
 }
 
 const struct bsdf_type type_roughconductor = {
@@ -201,4 +419,7 @@ const struct bsdf_type type_roughconductor = {
     .init = init,
     .facet_d = facet_d,
     .facet_g1 = facet_g1,
+    .eval_many = eval_many,
+    .pdf_many = pdf_many,
+    .sample_many = sample_many,
 };

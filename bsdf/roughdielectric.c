@@ -27,9 +27,9 @@
  */
 #include <gsl/gsl_sf_gamma.h>
 
+#include "bsdf/facets.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/medium.h"
-#include "bsdf/ndf.h"
 #include "bsdf/roughness.h"
 #include "bsdf/types.h"
 
@@ -41,6 +41,7 @@ struct roughdielectric {
     double alpha, alpha_u, alpha_v;
     double eta; /* below over above */
     int distribution, sample_visible, masking, lobes;
+    struct facets facets;
 };
 
 static const char *const lobe_sets[] = { "both", "reflection", "transmission",
@@ -62,9 +63,12 @@ static const struct bsdf_param params[] = {
 static bool init(void *state, const struct bands *bands, struct err *err)
 {
     struct roughdielectric *m = state;
-    return roughness_settle("roughdielectric", m->alpha, &m->alpha_u,
-                            &m->alpha_v, err) &&
-           medium_settle("roughdielectric", m->int_ior, m->ext_ior, bands,
+    if (!roughness_settle("roughdielectric", m->alpha, &m->alpha_u, &m->alpha_v,
+                          err))
+        return false;
+    m->facets = facets_of(roughness_ndf[m->distribution]->family, m->alpha_u,
+                          m->alpha_v);
+    return medium_settle("roughdielectric", m->int_ior, m->ext_ior, bands,
                          &m->eta, err);
 }
 
@@ -84,16 +88,6 @@ static struct bsdf_claims claims(const void *state, const struct bands *bands)
         .two_sided = true,
         .eta = m->eta,
     };
-}
-
-static const struct ndf *ndf(const struct roughdielectric *m)
-{
-    return roughness_ndf[m->distribution];
-}
-
-static double lambda(const struct roughdielectric *m, struct vec3 w)
-{
-    return ndf_lambda(ndf(m), m->alpha_u, m->alpha_v, w);
 }
 
 static double g2(const struct roughdielectric *m, double lo, double li,
@@ -143,21 +137,28 @@ static struct facet facet_between(const struct roughdielectric *m,
 
 static double d(const struct roughdielectric *m, struct vec3 h)
 {
-    return ndf_d(ndf(m), m->alpha_u, m->alpha_v, h);
+    return h.z > 0 ? facets_d(m->facets, h, vec3_dot(h, h)) : 0;
+}
+
+/* From lambda(wo) and lambda(wi). */
+static struct spectrum eval_of(const struct roughdielectric *m, struct vec3 wo,
+                               struct vec3 wi, double lo, double li)
+{
+    const struct facet t = facet_between(m, wo, wi);
+    if (!t.exists)
+        return (struct spectrum){ { 0 } };
+    const double common =
+        t.share * d(m, t.h) * g2(m, lo, li, t.reflects) / fabs(wo.z * wi.z);
+    return t.reflects ? spectrum_scale(common / 4, m->specular_reflectance)
+                      : spectrum_scale(common * t.co * t.ci / t.square,
+                                       m->specular_transmittance);
 }
 
 static struct spectrum eval(const void *state, struct vec3 wo, struct vec3 wi)
 {
     const struct roughdielectric *m = state;
-    const struct facet t = facet_between(m, wo, wi);
-    if (!t.exists)
-        return (struct spectrum){ { 0 } };
-    const double common = t.share * d(m, t.h) *
-                          g2(m, lambda(m, wo), lambda(m, wi), t.reflects) /
-                          fabs(wo.z * wi.z);
-    return t.reflects ? spectrum_scale(common / 4, m->specular_reflectance)
-                      : spectrum_scale(common * t.co * t.ci / t.square,
-                                       m->specular_transmittance);
+    return eval_of(m, wo, wi, facets_lambda(m->facets, wo),
+                   facets_lambda(m->facets, wi));
 }
 
 /* The pdf from lambda(wo), which is asked for visible normals alone. */
@@ -171,18 +172,26 @@ static double density(const struct roughdielectric *m, struct vec3 wo,
            (t->reflects ? 1 / (4 * t->co) : t->n * t->n * t->ci / t->square);
 }
 
+static double pdf_of(const struct roughdielectric *m, struct vec3 wo,
+                     struct vec3 wi, double lo)
+{
+    const struct facet t = facet_between(m, wo, wi);
+    return t.exists ? density(m, wo, &t, lo) : 0;
+}
+
 static double pdf(const void *state, struct vec3 wo, struct vec3 wi)
 {
     const struct roughdielectric *m = state;
-    const struct facet t = facet_between(m, wo, wi);
-    return t.exists ? density(m, wo, &t, m->sample_visible ? lambda(m, wo) : 0)
-                    : 0;
+    return pdf_of(m, wo, wi,
+                  m->sample_visible ? facets_lambda(m->facets, wo) : 0);
 }
 
-static struct bsdf_sample sample(const void *state, struct vec3 wo,
-                                 struct vec3 u)
+/* By a facet with its normal along h, of any length and on the side of wo;
+ * from lambda(wo). */
+static struct bsdf_sample sample_of(const struct roughdielectric *m,
+                                    struct vec3 wo, struct vec3 h, double u,
+                                    double lo)
 {
-    const struct roughdielectric *m = state;
     const struct bsdf_sample refused = { 0 };
     const double side = copysign(1, wo.z);
     if (wo.z == 0)
@@ -194,29 +203,23 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
                                            .pdf = 1,
                                            .weight = m->specular_transmittance,
                                            .delta = true };
-    /* Seen from below the facets are those of the opposite direction. */
-    const struct vec3 h =
-        m->sample_visible
-            ? ndf_sample_visible(ndf(m), m->alpha_u, m->alpha_v,
-                                 vec3_scale(side, wo), u.x, u.y)
-            : ndf_sample_all(ndf(m), m->alpha_u, m->alpha_v, u.x, u.y);
+    h = vec3_unit(h);
     const double n = wo.z > 0 ? m->eta : 1 / m->eta;
     const double c = vec3_dot(wo, h) * side;
     if (!(c > 0))
         return refused;
     double cos_t;
-    const bool reflects = u.z < fresnel_dielectric(fmin(c, 1), n, &cos_t);
+    const bool reflects = u < fresnel_dielectric(fmin(c, 1), n, &cos_t);
     const struct vec3 wi =
         reflects ? vec3_unit(vec3_reflect(wo, h))
                  : medium_refract(wo, vec3_scale(side, h), n, cos_t);
     const struct facet t = facet_between(m, wo, wi);
     if (!t.exists || t.reflects != reflects)
         return refused;
-    const double lo = lambda(m, wo);
     const double p = density(m, wo, &t, lo);
     if (!(p > 0))
         return refused;
-    const double g = g2(m, lo, lambda(m, wi), reflects);
+    const double g = g2(m, lo, facets_lambda(m->facets, wi), reflects);
     const double ratio =
         m->sample_visible ? g * (1 + lo) : g * t.co / (fabs(wo.z) * t.h.z);
     return (struct bsdf_sample){
@@ -228,6 +231,94 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
     };
 }
 
+/* Seen from below the facets are those of the opposite direction. */
+static struct vec3 turned_up(struct vec3 w)
+{
+    return vec3_scale(copysign(1, w.z), w);
+}
+
+static struct bsdf_sample sample(const void *state, struct vec3 wo,
+                                 struct vec3 u)
+{
+    const struct roughdielectric *m = state;
+    const struct vec3 h =
+        m->sample_visible ? facets_visible(m->facets, turned_up(wo), u.x, u.y)
+                          : facets_all(m->facets, u.x, u.y);
+    return sample_of(m, wo, h, u.z, facets_lambda(m->facets, wo));
+}
+
+/* -- many at once: lambda and the normals in lanes, the rest one by one ---- */
+
+struct lanes {
+    double lo[LANES_MAX], li[LANES_MAX];
+    double ox[LANES_MAX], oy[LANES_MAX], oz[LANES_MAX];
+    double hx[LANES_MAX], hy[LANES_MAX], hz[LANES_MAX];
+};
+
+static void look(const struct roughdielectric *m, size_t n, struct dirs wo,
+                 double *lo)
+{
+    const bool one = dirs_same(n, wo);
+    facets_lambda_many(m->facets, one ? 1 : n, wo, lo);
+    if (one)
+        facets_fill(n, lo);
+}
+
+static void eval_many(const void *state, size_t n, struct dirs wo,
+                      struct dirs wi, struct spectrum *f)
+{
+    const struct roughdielectric *m = state;
+    struct lanes l;
+    for (size_t at = 0, k; at < n; at += k) {
+        const struct dirs o = dirs_from(wo, at), w = dirs_from(wi, at);
+        k = n - at < LANES_MAX ? n - at : LANES_MAX;
+        look(m, k, o, l.lo);
+        facets_lambda_many(m->facets, k, w, l.li);
+        for (size_t i = 0; i < k; i++)
+            f[at + i] =
+                eval_of(m, dirs_at(o, i), dirs_at(w, i), l.lo[i], l.li[i]);
+    }
+}
+
+static void pdf_many(const void *state, size_t n, struct dirs wo,
+                     struct dirs wi, double *p)
+{
+    const struct roughdielectric *m = state;
+    struct lanes l;
+    for (size_t at = 0, k; at < n; at += k) {
+        const struct dirs o = dirs_from(wo, at), w = dirs_from(wi, at);
+        k = n - at < LANES_MAX ? n - at : LANES_MAX;
+        look(m, k, o, l.lo);
+        for (size_t i = 0; i < k; i++)
+            p[at + i] = pdf_of(m, dirs_at(o, i), dirs_at(w, i), l.lo[i]);
+    }
+}
+
+static void sample_many(const void *state, size_t n, struct dirs wo,
+                        struct dirs u, struct bsdf_sample *s)
+{
+    const struct roughdielectric *m = state;
+    struct lanes l;
+    for (size_t at = 0, k; at < n; at += k) {
+        const struct dirs o = dirs_from(wo, at), v = dirs_from(u, at);
+        k = n - at < LANES_MAX ? n - at : LANES_MAX;
+        look(m, k, o, l.lo);
+        for (size_t i = 0; i < k; i++) {
+            const struct vec3 up = turned_up(dirs_at(o, i));
+            l.ox[i] = up.x, l.oy[i] = up.y, l.oz[i] = up.z;
+        }
+        if (m->sample_visible)
+            facets_visible_many(m->facets, k, (struct dirs){ l.ox, l.oy, l.oz },
+                                v, l.hx, l.hy, l.hz);
+        else
+            facets_all_many(m->facets, k, v, l.hx, l.hy, l.hz);
+        for (size_t i = 0; i < k; i++)
+            s[at + i] = sample_of(m, dirs_at(o, i),
+                                  (struct vec3){ l.hx[i], l.hy[i], l.hz[i] },
+                                  v.z[i], l.lo[i]);
+    }
+}
+
 static double facet_d(const void *state, struct vec3 h)
 {
     return d(state, h);
@@ -235,7 +326,8 @@ static double facet_d(const void *state, struct vec3 h)
 
 static double facet_g1(const void *state, struct vec3 w)
 {
-    return 1 / (1 + lambda(state, w));
+    const struct roughdielectric *m = state;
+    return 1 / (1 + facets_lambda(m->facets, w));
 }
 
 const struct bsdf_type type_roughdielectric = {
@@ -250,4 +342,7 @@ const struct bsdf_type type_roughdielectric = {
     .init = init,
     .facet_d = facet_d,
     .facet_g1 = facet_g1,
+    .eval_many = eval_many,
+    .pdf_many = pdf_many,
+    .sample_many = sample_many,
 };

@@ -26,6 +26,12 @@ static inline struct vec3 dirs_at(struct dirs d, size_t i)
     return (struct vec3){ d.x[i], d.y[i], d.z[i] };
 }
 
+/** The same from one of them on. */
+static inline struct dirs dirs_from(struct dirs d, size_t i)
+{
+    return (struct dirs){ d.x + i, d.y + i, d.z + i };
+}
+
 static inline struct vec3 vec3_add(struct vec3 a, struct vec3 b)
 {
     return (struct vec3){ a.x + b.x, a.y + b.y, a.z + b.z };
@@ -61,6 +67,13 @@ static inline double vec3_length(struct vec3 a)
 static inline struct vec3 vec3_unit(struct vec3 a)
 {
     return vec3_scale(1 / vec3_length(a), a);
+}
+
+/** The same where rounding alone made the length another than 1: Newton's step
+ * for 1 / sqrt(a.a) from 1, off by the square of that. */
+static inline struct vec3 vec3_unit_again(struct vec3 a)
+{
+    return vec3_scale(1.5 - vec3_dot(a, a) / 2, a);
 }
 
 /** Reflection of w at a facet whose unit normal is m: 2 (w.m) m - w. */

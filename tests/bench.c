@@ -1,13 +1,16 @@
-/* bench.c - what the models, a chi-square and the masses of bins cost
+/* bench.c - what the models, chi-squares and the masses of bins cost
  *
- * One thread; medians of several runs, in which what is compared takes turns.
- * Ratios come first, as they can be compared between machines.
+ * One thread, of which the processor's time is taken; medians of several runs,
+ * in which what is compared takes turns.  Ratios come first, as they can be
+ * compared between machines.
  *
  * The baseline of the masses is what usual chi-square tests do: a trapezoidal
  * rule of 32 x 32 intervals on every bin, over the angles.  The reference, not
  * timed, is a product of 16-point Gauss-Legendre rules that quarters a bin
  * until it agrees with its quarters, and shares nothing with
  * validate/quadrature.c.
+ *
+ * The baseline of a chi-square on 51 x 102 bins is tests/baseline_simpson.c.
  */
 #include <gsl/gsl_integration.h>
 #include <stdio.h>
@@ -15,6 +18,9 @@
 #include <string.h>
 #include <time.h>
 
+#include "bsdf/fastmath.h"
+#include "bsdf/lanes.h"
+#include "tests/baseline_simpson.h"
 #include "validate/checks.h"
 
 enum {
@@ -24,7 +30,13 @@ enum {
     CHI2_RUNS = 5,
     MASS_RUNS = 15
 };
-enum { OPS = 3, MODELS = 4, LOBES = 2 };
+enum { OPS = 3, MODELS = 4, LOBES = 2, GRIDS = 2 };
+
+/* Of a chi-square on a grid, and of evaluations of a pdf. */
+enum { STRIPS = 51, SLICES = 102, CELLS = STRIPS * SLICES };
+enum { GRID_SAMPLES = 1000000, GRID_ORDER = 6, GRID_RUNS = 5 };
+enum { PDFS = 320000 };
+static const double goal_ratio = 8, goal_pdf_ns = 4.5;
 
 static const struct bands bands = { .count = 3, .nm = { 614, 549, 466 } };
 
@@ -46,7 +58,7 @@ static const struct {
 static double seconds(void)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
@@ -272,12 +284,12 @@ static struct rule trapezoid(void)
     return r;
 }
 
-static struct rule gauss(void)
+static struct rule gauss(size_t nodes)
 {
-    struct rule r = { .nodes = GAUSS };
+    struct rule r = { .nodes = nodes };
     gsl_integration_glfixed_table *t =
-        or_exit(gsl_integration_glfixed_table_alloc(GAUSS), "out of memory");
-    for (size_t i = 0; i < GAUSS; i++)
+        or_exit(gsl_integration_glfixed_table_alloc(nodes), "out of memory");
+    for (size_t i = 0; i < nodes; i++)
         gsl_integration_glfixed_point(0, 1, i, &r.x[i], &r.weight[i], t);
     gsl_integration_glfixed_table_free(t);
     return r;
@@ -349,7 +361,7 @@ struct masses {
 static double *reference_masses(const struct partition *p, struct lobe l,
                                 double *total)
 {
-    const struct rule rule = gauss();
+    const struct rule rule = gauss(GAUSS);
     double *mass =
         or_exit(malloc(partition_bins(p) * sizeof *mass), "out of memory");
     *total = 0;
@@ -422,12 +434,216 @@ static struct masses time_masses(const struct bsdf *b)
     return m;
 }
 
+/* -- a chi-square on a grid -------------------------------------------------
+ */
+
+#define METAL "roughconductor:eta=0.29/0.32/0.36,k=2.7/2.3/1.8,alpha=0.25,"
+
+static const struct {
+    const char *name, *spec;
+    enum baseline_kind kind;
+} grids[GRIDS] = {
+    { "beckmann, all normals", METAL "sample_visible=false",
+      BASELINE_BECKMANN_ALL },
+    { "ggx, visible normals", METAL "distribution=ggx", BASELINE_GGX_VISIBLE },
+};
+
+struct grid_test {
+    double sampling, integrating; /* [ms] */
+    double statistic, weight;     /* chi-square, mean over samples and bands */
+    double error;                 /* the largest of a mass, of ours */
+    long degrees;
+};
+
+struct grid_tests {
+    struct grid_test usual, ours;
+};
+
+static struct grid_test grid_usual(int kind, double theta)
+{
+    static long counts[CELLS];
+    static double mass[CELLS];
+    const struct baseline b = { .kind = grids[kind].kind,
+                                .alpha = 0.25F,
+                                .eta = { 0.29F, 0.32F, 0.36F },
+                                .k = { 2.7F, 2.3F, 1.8F },
+                                .theta = (float)theta };
+    struct grid_test t;
+    memset(counts, 0, sizeof counts);
+    const double start = seconds();
+    t.weight = baseline_sample(&b, 1, GRID_SAMPLES, STRIPS, SLICES, counts);
+    const double middle = seconds();
+    baseline_integrate(&b, STRIPS, SLICES, mass);
+    t.statistic =
+        chi_square_pooled(counts, mass, CELLS, GRID_SAMPLES, &t.degrees);
+    t.sampling = (middle - start) * 1e3;
+    t.integrating = (seconds() - middle) * 1e3;
+    return t;
+}
+
+/* The cell of each direction, CELLS where there is none. */
+LANES static void cells(const double *x, const double *y, const double *z,
+                        const double *pdf, int *cell)
+{
+    LANES_LOOP
+    for (int i = 0; i < BATCH; i++) {
+        const double r = sqrt(x[i] * x[i] + y[i] * y[i]);
+        const double theta = fm_atan2(r, z[i]), phi = fm_atan2(y[i], x[i]);
+        const double strip = theta * (STRIPS / PI);
+        const double slice =
+            (phi < 0 ? phi + 2 * PI : phi) * (SLICES / (2 * PI));
+        const int row = (int)fm_min(strip, STRIPS - 1);
+        const int column = (int)fm_min(slice, SLICES - 1);
+        cell[i] = pdf[i] > 0 ? row * SLICES + column : CELLS;
+    }
+}
+
+static double grid_sample(const struct bsdf *b, struct vec3 wo, long *counts)
+{
+    static double u[3][BATCH], o[3][BATCH], w[3][BATCH], pdf[BATCH];
+    struct bsdf_sample s[BATCH];
+    int cell[BATCH];
+    double sum = 0;
+    for (int i = 0; i < BATCH; i++)
+        o[0][i] = wo.x, o[1][i] = wo.y, o[2][i] = wo.z;
+    for (uint64_t at = 0; at < GRID_SAMPLES; at += BATCH) {
+        const size_t n = at + BATCH > GRID_SAMPLES ? (size_t)(GRID_SAMPLES - at)
+                                                   : (size_t)BATCH;
+        rng_uniform_many((struct rng){ 1, 9 }, at, BATCH, u[0], u[1], u[2]);
+        bsdf_sample_many(b, n, (struct dirs){ o[0], o[1], o[2] },
+                         (struct dirs){ u[0], u[1], u[2] }, s);
+        for (size_t i = 0; i < n; i++) {
+            w[0][i] = s[i].wi.x, w[1][i] = s[i].wi.y, w[2][i] = s[i].wi.z;
+            pdf[i] = s[i].pdf;
+            sum +=
+                s[i].weight.band[0] + s[i].weight.band[1] + s[i].weight.band[2];
+        }
+        cells(w[0], w[1], w[2], pdf, cell);
+        for (size_t i = 0; i < n; i++)
+            counts[cell[i]]++;
+    }
+    return sum / (3.0 * GRID_SAMPLES);
+}
+
+/* Six Gauss-Legendre points each way in every bin; strip by strip, as the
+ * sines of phi are the same in each. */
+static void grid_integrate(const struct bsdf *b, struct vec3 wo, double *mass)
+{
+    enum { ROW = SLICES * GRID_ORDER, ROUNDED = (ROW / BATCH + 1) * BATCH };
+    static double c[ROW], s[ROW], o[3][ROUNDED], w[3][ROUNDED], pdf[ROUNDED];
+    const struct rule rule = gauss(GRID_ORDER);
+    memset(mass, 0, CELLS * sizeof *mass);
+    for (int i = 0; i < ROUNDED; i++)
+        o[0][i] = wo.x, o[1][i] = wo.y, o[2][i] = wo.z;
+    for (int k = 0; k < ROW; k++) {
+        const double phi =
+            2 * PI / SLICES * (k / GRID_ORDER + rule.x[k % GRID_ORDER]);
+        c[k] = cos(phi), s[k] = sin(phi);
+    }
+    for (int i = 0; i < STRIPS * GRID_ORDER; i++) {
+        const double theta =
+            PI / STRIPS * (i / GRID_ORDER + rule.x[i % GRID_ORDER]);
+        const double sine = sin(theta), cosine = cos(theta);
+        for (int k = 0; k < ROW; k++)
+            w[0][k] = sine * c[k], w[1][k] = sine * s[k], w[2][k] = cosine;
+        bsdf_pdf_many(b, ROW, (struct dirs){ o[0], o[1], o[2] },
+                      (struct dirs){ w[0], w[1], w[2] }, pdf);
+        const double scale = rule.weight[i % GRID_ORDER] * sine *
+                             (PI / STRIPS) * (2 * PI / SLICES);
+        double *row = mass + i / GRID_ORDER * SLICES;
+        for (int k = 0; k < ROW; k++)
+            row[k / GRID_ORDER] += scale * rule.weight[k % GRID_ORDER] * pdf[k];
+    }
+}
+
+/* The largest error of a mass, not timed. */
+static double grid_error(const struct bsdf *b, struct vec3 wo,
+                         const double *mass)
+{
+    const struct rule rule = gauss(GAUSS);
+    long evaluations = 0;
+    const struct lobe l = { b, wo, &evaluations };
+    double most = 0;
+    for (int i = 0; i < CELLS; i++) {
+        const int row = i / SLICES, column = i % SLICES;
+        const struct patch bin = { row * PI / STRIPS, (row + 1) * PI / STRIPS,
+                                   column * 2 * PI / SLICES,
+                                   (column + 1) * 2 * PI / SLICES };
+        const double truth =
+            refined(&rule, &l, bin, product(&rule, &l, bin), 6);
+        most = fmax(most, fabs(mass[i] - truth));
+    }
+    return most;
+}
+
+static struct grid_test grid_ours(const struct bsdf *b, struct vec3 wo,
+                                  bool check)
+{
+    static long counts[CELLS + 1];
+    static double mass[CELLS];
+    struct grid_test t;
+    memset(counts, 0, sizeof counts);
+    const double start = seconds();
+    t.weight = grid_sample(b, wo, counts);
+    const double middle = seconds();
+    grid_integrate(b, wo, mass);
+    t.statistic =
+        chi_square_pooled(counts, mass, CELLS, GRID_SAMPLES, &t.degrees);
+    t.sampling = (middle - start) * 1e3;
+    t.integrating = (seconds() - middle) * 1e3;
+    t.error = check ? grid_error(b, wo, mass) : 0;
+    return t;
+}
+
+/* Both in turns; seen from 45 degrees. */
+static struct grid_tests time_grid(int kind)
+{
+    double time[4][GRID_RUNS];
+    struct grid_tests t;
+    struct bsdf *b = make(grids[kind].spec);
+    for (int run = 0; run < GRID_RUNS; run++) {
+        t.usual = grid_usual(kind, PI / 4);
+        t.ours = grid_ours(b, dir_from_degrees(45, 0), run == GRID_RUNS - 1);
+        time[0][run] = t.usual.sampling, time[1][run] = t.usual.integrating;
+        time[2][run] = t.ours.sampling, time[3][run] = t.ours.integrating;
+    }
+    t.usual.sampling = median(time[0], GRID_RUNS);
+    t.usual.integrating = median(time[1], GRID_RUNS);
+    t.ours.sampling = median(time[2], GRID_RUNS);
+    t.ours.integrating = median(time[3], GRID_RUNS);
+    bsdf_free(b);
+    return t;
+}
+
+/* Of a pdf in batches, seen from 30 degrees [ns]. */
+static double time_pdf(const struct bsdf *b)
+{
+    static struct inputs in;
+    double time[RUNS], pdf[BATCH];
+    fill(&in, b);
+    for (size_t i = 0; i < DIRECTIONS; i++) {
+        const struct vec3 wo = dir_from_degrees(30, 0);
+        put(in.wo, i, wo);
+        put(in.wi, i, bsdf_sample(b, wo, dirs_at(from(in.u, 0), i)).wi);
+    }
+    for (int run = 0; run < RUNS; run++) {
+        const double start = seconds();
+        for (size_t at = 0; at < PDFS; at += BATCH)
+            bsdf_pdf_many(b, BATCH, from(in.wo, at % DIRECTIONS),
+                          from(in.wi, at % DIRECTIONS), pdf);
+        time[run] = seconds() - start;
+    }
+    return median(time, RUNS) / PDFS * 1e9;
+}
+
 /* -- the report ------------------------------------------------------------ */
 
 struct results {
     struct calls calls[MODELS][OPS];
     double chi2[MODELS]; /* [ms] */
     struct masses masses[LOBES];
+    double pdf[LOBES]; /* [ns] */
+    struct grid_tests grid[GRIDS];
 };
 
 static void print_machine(void)
@@ -447,7 +663,8 @@ static void print_machine(void)
     const char *compiler = "gcc " __VERSION__;
 #endif
     printf("machine   %s\ncompiler  %s\ndate      %s\n", model, compiler, date);
-    printf("method    one thread; medians; three bands; %d directions, wo "
+    printf("method    one thread, its own time; medians; three bands; %d "
+           "directions, wo "
            "uniform over the upper\n          hemisphere and wi drawn by the "
            "model; batches of %d\n",
            DIRECTIONS, BATCH);
@@ -463,7 +680,17 @@ static void print_ratios(const struct results *r)
         for (int op = 0; op < OPS; op++)
             printf("%12.2f", r->calls[m][op].one / r->calls[m][op].many);
     }
-    printf("\n%-42s%12s\n", "chi-square / drawing its samples", "time");
+    printf("\n%-42s%12s%12s%12s\n", "usual chi-square / ours, 51 x 102 bins",
+           "samples", "masses", "both");
+    for (int k = 0; k < GRIDS; k++) {
+        const struct grid_test *a = &r->grid[k].usual, *b = &r->grid[k].ours;
+        printf("  %-40s%12.2f%12.2f%12.2f  (goal: at least %g)\n",
+               grids[k].name, a->sampling / b->sampling,
+               a->integrating / b->integrating,
+               (a->sampling + a->integrating) / (b->sampling + b->integrating),
+               goal_ratio);
+    }
+    printf("%-42s%12s\n", "chi-square / drawing its samples", "time");
     for (int m = 0; m < MODELS; m++)
         printf("  %-40s%12.2f\n", models[m].name,
                r->chi2[m] /
@@ -495,6 +722,25 @@ static void print_times(const struct results *r)
     }
     printf("\n  %s\n", same ? "both give the same, to the last bit"
                             : "THE TWO DIFFER, which they must not");
+    printf("pdf in batches, alpha .005, one wo at 30 degrees, %d calls\n",
+           PDFS);
+    for (int k = 0; k < LOBES; k++)
+        printf("  %-40s%7.2f ns  (goal: at most %g)\n", lobes[k].name,
+               r->pdf[k], goal_pdf_ns);
+    printf("chi-square of %.0g samples on %d x %d bins, alpha .25, at 45 "
+           "degrees\n  %-22s%14s%14s%14s%22s\n",
+           (double)GRID_SAMPLES, STRIPS, SLICES, "", "samples, ms",
+           "masses, ms", "mean weight", "chi-square / degrees");
+    for (int k = 0; k < GRIDS; k++) {
+        const struct grid_test *t[] = { &r->grid[k].usual, &r->grid[k].ours };
+        for (int i = 0; i < 2; i++)
+            printf("  %-22s%14.1f%14.1f%14.4f%15.0f /%5ld%s\n",
+                   i ? "" : grids[k].name, t[i]->sampling, t[i]->integrating,
+                   t[i]->weight, t[i]->statistic, t[i]->degrees,
+                   i ? "  ours" : "  usual");
+        printf("  %-22slargest error of a mass, ours: %.1g\n", "",
+               r->grid[k].ours.error);
+    }
     printf("chi-square of %.0g samples, at 45 degrees\n",
            (double)plan_default.samples);
     for (int m = 0; m < MODELS; m++)
@@ -533,8 +779,11 @@ int main(void)
     for (int k = 0; k < LOBES; k++) {
         struct bsdf *b = make(lobes[k].spec);
         r.masses[k] = time_masses(b);
+        r.pdf[k] = time_pdf(b);
         bsdf_free(b);
     }
+    for (int k = 0; k < GRIDS; k++)
+        r.grid[k] = time_grid(k);
     print_ratios(&r);
     print_times(&r);
     return 0;

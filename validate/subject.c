@@ -133,10 +133,7 @@ void subject_draw(const struct subject *s, struct rng rng, uint64_t first,
     struct repeated r;
     const struct dirs wo = repeat(&r, s->wo, n), u = { x, y, z };
     for (size_t at = 0; at < n; at += SUBJECT_BATCH) {
-        for (size_t i = 0; i < batch(n, at); i++) {
-            const struct vec3 v = rng_uniform(rng, first + at + i);
-            x[i] = v.x, y[i] = v.y, z[i] = v.z;
-        }
+        rng_uniform_many(rng, first + at, batch(n, at), x, y, z);
         bsdf_sample_many(s->bsdf, batch(n, at), wo, u, out + at);
     }
 }

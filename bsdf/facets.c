@@ -1,0 +1,207 @@
+/* facets.c - the loops of facets.h
+ *
+ * What depends on w alone is computed once where all w of a batch are the
+ * same, as they are when one lobe is drawn from; the numbers are the same ones.
+ * A family is a constant in each loop, so that no lane has a branch on it.
+ */
+#include "bsdf/facets.h"
+
+LANES static uint64_t differences(size_t n, const double *x)
+{
+    const uint64_t first = fm_bits(x[0]);
+    uint64_t differ = 0;
+    _Pragma("omp simd reduction(|:differ)") for (size_t i = 0; i < n; i++)
+        differ |= fm_bits(x[i]) ^ first;
+    return differ;
+}
+
+bool dirs_same(size_t n, struct dirs w)
+{
+    return !(differences(n, w.x) | differences(n, w.y) | differences(n, w.z));
+}
+
+LANES static void fill(size_t n, double *x)
+{
+    const double first = x[0];
+    LANES_LOOP
+    for (size_t i = 1; i < n; i++)
+        x[i] = first;
+}
+
+void facets_fill(size_t n, double *x)
+{
+    fill(n, x);
+}
+
+INLINE void lambdas(struct facets f, size_t n, struct dirs w, double *lambda)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        lambda[i] = facets_lambda(f, dirs_at(w, i));
+}
+
+LANES static void lambda_lanes(struct facets f, size_t n, struct dirs w,
+                               double *lambda)
+{
+    if (f.family == NDF_GGX)
+        lambdas(facets_as(f, NDF_GGX), n, w, lambda);
+    else
+        lambdas(facets_as(f, NDF_BECKMANN), n, w, lambda);
+}
+
+void facets_lambda_many(struct facets f, size_t n, struct dirs w,
+                        double *lambda)
+{
+    lambda_lanes(f, n, w, lambda);
+}
+
+INLINE void all(struct facets f, size_t n, struct dirs u, double *mx,
+                double *my, double *mz)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct vec3 m = facets_all(f, u.x[i], u.y[i]);
+        mx[i] = m.x, my[i] = m.y, mz[i] = m.z;
+    }
+}
+
+LANES static void all_lanes(struct facets f, size_t n, struct dirs u,
+                            double *mx, double *my, double *mz)
+{
+    if (f.family == NDF_GGX)
+        all(facets_as(f, NDF_GGX), n, u, mx, my, mz);
+    else
+        all(facets_as(f, NDF_BECKMANN), n, u, mx, my, mz);
+}
+
+void facets_all_many(struct facets f, size_t n, struct dirs u, double *mx,
+                     double *my, double *mz)
+{
+    all_lanes(f, n, u, mx, my, mz);
+}
+
+/* A facets_view a lane. */
+struct views {
+    double x[LANES_MAX], y[LANES_MAX];
+    union {
+        struct {
+            double sine[LANES_MAX], cosine[LANES_MAX];
+        } ggx;
+        struct {
+            double a[LANES_MAX], all[LANES_MAX], toward[LANES_MAX];
+            double shift[LANES_MAX], edge[LANES_MAX], bend[LANES_MAX];
+        } beckmann;
+    };
+};
+
+LANES static void ggx_views(struct facets f, size_t n, struct dirs w,
+                            struct views *v)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct facets_view at =
+            facets_view(facets_as(f, NDF_GGX), dirs_at(w, i));
+        v->x[i] = at.x, v->y[i] = at.y;
+        v->ggx.sine[i] = at.ggx.x, v->ggx.cosine[i] = at.ggx.z;
+    }
+}
+
+LANES static void ggx_lanes(struct facets f, size_t n, const struct views *v,
+                            struct dirs u, double *mx, double *my, double *mz)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct vec3 w = { v->ggx.sine[i], 0, v->ggx.cosine[i] };
+        const struct vec3 m =
+            facets_stretch(f, v->x[i], v->y[i], ggx_visible(w, u.x[i], u.y[i]));
+        mx[i] = m.x, my[i] = m.y, mz[i] = m.z;
+    }
+}
+
+LANES static void beckmann_views(struct facets f, size_t n, struct dirs w,
+                                 struct views *v)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct facets_view at =
+            facets_view(facets_as(f, NDF_BECKMANN), dirs_at(w, i));
+        v->x[i] = at.x, v->y[i] = at.y;
+        v->beckmann.a[i] = at.beckmann.a;
+        v->beckmann.all[i] = at.beckmann.all;
+        v->beckmann.toward[i] = at.beckmann.toward;
+        v->beckmann.shift[i] = at.beckmann.shift;
+        v->beckmann.edge[i] = at.beckmann.edge;
+        v->beckmann.bend[i] = at.beckmann.bend;
+    }
+}
+
+INLINE struct beckmann_seen beckmann_at(const struct views *v, size_t i)
+{
+    return (struct beckmann_seen){
+        v->beckmann.a[i],     v->beckmann.all[i],  v->beckmann.toward[i],
+        v->beckmann.shift[i], v->beckmann.edge[i], v->beckmann.bend[i],
+    };
+}
+
+/* Slopes along and across w, and which of them are not to be trusted. */
+LANES static void slope_lanes(size_t n, const struct views *v, struct dirs u,
+                              double *x, double *y, uint64_t *late)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        bool arrived;
+        x[i] = beckmann_slope_soon(beckmann_at(v, i), u.x[i], &arrived);
+        late[i] = arrived ? 0 : 1;
+    }
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const double w = fm_probit_w(u.y[i]);
+        y[i] = fm_probit_near(u.y[i], w);
+        late[i] |= fm_probit_is_near(w) ? 0 : 2;
+    }
+}
+
+LANES static void stretch_lanes(struct facets f, size_t n,
+                                const struct views *v, double *mx, double *my,
+                                double *mz)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct vec3 m = facets_stretch(f, v->x[i], v->y[i],
+                                             (struct vec3){ mx[i], my[i], 1 });
+        mx[i] = m.x, my[i] = m.y, mz[i] = m.z;
+    }
+}
+
+static void beckmann_lanes(struct facets f, size_t n, const struct views *v,
+                           struct dirs u, double *mx, double *my, double *mz)
+{
+    uint64_t late[LANES_MAX];
+    slope_lanes(n, v, u, mx, my, late);
+    for (size_t i = 0; i < n; i++) {
+        if (late[i] & 1)
+            mx[i] = beckmann_slope_surely(v->beckmann.a[i], u.x[i]);
+        if (late[i] & 2)
+            my[i] = fm_probit_far(u.y[i], fm_probit_w(u.y[i]));
+    }
+    stretch_lanes(f, n, v, mx, my, mz);
+}
+
+void facets_visible_many(struct facets f, size_t n, struct dirs w,
+                         struct dirs u, double *mx, double *my, double *mz)
+{
+    struct views v;
+    const bool one = dirs_same(n, w);
+    const size_t views = one ? 1 : n;
+    if (f.family == NDF_GGX)
+        ggx_views(f, views, w, &v);
+    else
+        beckmann_views(f, views, w, &v);
+    if (one)
+        for (size_t k = 0; k < sizeof v / sizeof v.x; k++)
+            fill(n, (double *)&v + k * LANES_MAX);
+    if (f.family == NDF_GGX)
+        ggx_lanes(f, n, &v, u, mx, my, mz);
+    else
+        beckmann_lanes(f, n, &v, u, mx, my, mz);
+}
