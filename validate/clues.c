@@ -14,7 +14,7 @@ static struct clue clue_at(const struct subject *s, struct vec3 wi)
     const struct vec3 wo = s->wo;
     const double eta = s->claims.eta;
     const double n_o = wo.z < 0 ? eta : 1, n_i = wi.z < 0 ? eta : 1;
-    struct clue c = { .wi = wi, .through = wo.z * wi.z < 0 };
+    struct clue c = { .wo = wo, .wi = wi, .through = wo.z * wi.z < 0 };
     const struct vec3 sum = vec3_add(vec3_scale(n_o, wo), vec3_scale(n_i, wi));
     c.m = vec3_unit(vec3_scale(sum.z < 0 ? -1 : 1, sum));
     const double o = vec3_dot(wo, c.m), i = vec3_dot(wi, c.m);

@@ -9,8 +9,9 @@
 #include "validate/subject.h"
 
 struct clue {
-    double ratio;      /* 1 where nothing is wrong */
-    struct vec3 wi, m; /* m the normal of the facet that leads from wo to wi */
+    double ratio;          /* 1 where nothing is wrong */
+    struct vec3 wo, wi, m; /* m the normal of the facet that leads from wo to
+                              wi */
     bool through;
     double cos_o, cos_i, cos_h, wo_h, wi_h; /* all positive */
     double eta2;                            /* (n_i / n_o)^2 */

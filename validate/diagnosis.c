@@ -460,88 +460,101 @@ static const struct {
     { "masking with pi for sqrt(pi) in Lambda", g_course },
 };
 
-/* How well f 4 cos_o cos_i / D is the masking times a factor times F, of which
- * nothing is known but that it depends on one angle: the share of the variance
- * of the logarithm that is left, against what the neighbours in that angle
- * have.  most takes the largest F. */
-static double left_over(const struct clues *clues, const double *x,
-                        double (*angle)(const struct clue *c), double *most)
+/* f 4 cos_o cos_i / D seen from here and from four other directions, so that a
+ * mistake in masking is not taken for a constant. */
+static bool gather_facets(const struct subject *s, const struct facets_fit *fit,
+                          struct clues *all)
 {
-    static const double tiny = 1e-24;
-    double mean = 0, spread = 0;
-    struct clues *c = malloc(sizeof *c);
-    *most = 0;
-    for (size_t i = 0; i < clues->n; i++) {
-        mean += x[i] / (double)clues->n;
-        *most = fmax(*most, exp(x[i]));
+    static const double theta_deg[] = { 20, 45, 65, 80 };
+    struct clues *some = malloc(sizeof *some);
+    all->n = 0;
+    for (int i = 0; some && i < 5; i++) {
+        const struct vec3 wo =
+            i == 0 ? s->wo : dir_from_degrees(theta_deg[i - 1], 40);
+        const struct subject from = subject_plain(s->bsdf, wo, s->plan);
+        if (!clues_gather(&from, CLUES_FACETS, fitted_d, fit, some))
+            continue;
+        for (size_t k = 0; k < some->n && k < CLUES_MAX / 5; k++)
+            all->clue[all->n++] = some->clue[k];
     }
-    for (size_t i = 0; i < clues->n; i++)
-        spread += (x[i] - mean) * (x[i] - mean);
-    if (!c)
-        return INFINITY;
-    *c = *clues;
-    for (size_t i = 0; i < clues->n; i++)
-        c->clue[i].ratio = exp(x[i] - mean);
-    const double by = factors_explain_by(c, SCOPE_ALL, angle);
-    free(c);
-    return spread < tiny ? 0 : spread * (1 - by);
+    free(some);
+    return all->n >= 64;
 }
 
-/* f as D G F / (4 cos_o cos_i) with one thing wrong: the masking, a factor, or
- * the angle of F. */
+/* F as one masking implies it: how far it is from a function of one angle, rms
+ * of the logarithm, and the largest. */
+struct implied {
+    double off, most;
+};
+
+static struct implied implied_f(struct clues *clues, const double *ratio,
+                                const struct facets_fit *fit, int masking,
+                                double (*angle)(const struct clue *c))
+{
+    struct implied f = { 0, 0 };
+    double mean = 0, spread = 0;
+    const double n = (double)clues->n;
+    for (size_t i = 0; i < clues->n; i++) {
+        struct clue *c = &clues->clue[i];
+        c->ratio = ratio[i] / maskings[masking].g(fit, c->wo, c->wi);
+        f.most = fmax(f.most, c->ratio);
+        mean += log(c->ratio) / n;
+    }
+    for (size_t i = 0; i < clues->n; i++) {
+        struct clue *c = &clues->clue[i];
+        c->ratio /= exp(mean);
+        spread += log(c->ratio) * log(c->ratio) / n;
+    }
+    const double by = factors_explain_by(clues, SCOPE_ALL, angle);
+    f.off = spread < 1e-20 ? 0 : sqrt(spread * fmax(1 - by, 0));
+    return f;
+}
+
+/* f as D G F / (4 cos_o cos_i) with one thing wrong: the masking, the angle of
+ * F, or a constant. */
 static void diagnose_facets(struct guess *g, const struct subject *s,
                             struct clues *clues)
 {
+    enum { MASKINGS = sizeof maskings / sizeof *maskings };
     struct facets_fit fit;
-    double x[CLUES_MAX], right = INFINITY, all = 0;
+    double ratio[CLUES_MAX];
+    struct implied f[MASKINGS][2], right = { INFINITY, 0 };
     if (!facets_fit_shown(s, &fit)) {
-        double *drawn = malloc(CLUES_MAX * sizeof *drawn);
-        if (!drawn || !clues_gather(s, CLUES_DENSITY, NULL, NULL, clues)) {
-            free(drawn);
+        double drawn[CLUES_MAX];
+        if (!clues_gather(s, CLUES_DENSITY, NULL, NULL, clues))
             return;
-        }
         for (size_t i = 0; i < clues->n; i++)
             drawn[i] = clues->clue[i].share / clues->clue[i].det;
-        const bool fits = facets_fit(clues->clue, drawn, clues->n, &fit);
-        free(drawn);
-        if (!fits)
+        if (!facets_fit(clues->clue, drawn, clues->n, &fit))
             return;
     }
-    if (!clues_gather(s, CLUES_FACETS, fitted_d, &fit, clues) || clues->n < 64)
+    if (!gather_facets(s, &fit, clues))
         return;
-    for (size_t i = 0; i < clues->n; i++) {
-        const double q = log(clues->clue[i].ratio);
-        all += q * q;
-    }
-    for (int k = 0; k < (int)(sizeof maskings / sizeof *maskings); k++)
+    for (size_t i = 0; i < clues->n; i++)
+        ratio[i] = clues->clue[i].ratio;
+    for (int k = 0; k < MASKINGS; k++)
         for (int turn = 0; turn < 2; turn++) {
-            double most;
-            for (size_t i = 0; i < clues->n; i++)
-                x[i] = log(clues->clue[i].ratio /
-                           maskings[k].g(&fit, s->wo, clues->clue[i].wi));
-            const double left =
-                left_over(clues, x, turn ? angle_i : angle_h, &most);
-            if (!maskings[k].text) {
-                right = fmin(right, turn == 0 ? left : INFINITY);
-                /* As it should be, but for a constant. */
-                if (turn == 0 && most > 1 + 1e-6) {
-                    const double c = most > 3.2   ? 4
-                                     : most > 2.2 ? PI
-                                     : most > 1.2 ? 2
-                                                  : most;
-                    suggest(g, 1 - left / all - 1e-3,
-                            "f has the factor %s too many, or lacks what is "
-                            "below its fraction bar",
-                            c == 4    ? "4"
-                            : c == PI ? "pi"
-                            : c == 2  ? "2"
-                                      : "F above 1");
-                }
-            } else if (most <= 1 + 1e-4 && left < 0.05 * right) {
-                suggest(g, 1 - left / all, "%s%s", maskings[k].text,
-                        turn ? ", and F at n.wi" : "");
-            }
+            f[k][turn] =
+                implied_f(clues, ratio, &fit, k, turn ? angle_i : angle_h);
+            if (!maskings[k].text && f[k][turn].off < right.off)
+                right = f[k][turn];
         }
+    /* Right, but for a constant. */
+    if (right.off < 0.01 && right.most > 1 + 1e-6)
+        suggest(g, 0.99,
+                "f has the factor %s too many, or lacks what is below "
+                "its fraction bar",
+                right.most > 3.2   ? "4"
+                : right.most > 2.2 ? "pi"
+                                   : "2");
+    for (int k = 0; k < MASKINGS; k++)
+        for (int turn = 0; turn < 2; turn++)
+            if (maskings[k].text && f[k][turn].most <= 1 + 1e-4 &&
+                f[k][turn].off < 0.3 * right.off) {
+                const double left = f[k][turn].off / right.off;
+                suggest(g, 1 - left * left, "%s%s", maskings[k].text,
+                        turn ? ", and Fresnel at the wrong angle, n.wi" : "");
+            }
 }
 
 /* An albedo above 1 with nothing but a constant wrong. */
