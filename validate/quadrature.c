@@ -24,10 +24,33 @@ static const double node_weight[ORDER] = {
     0.467913934572691, 0.360761573048139, 0.171324492379170,
 };
 
+/* Lobatto's, which has the ends among its nodes; those are moved inward by a
+ * hair, as what is beyond an edge is not the leaf's.  Abramowitz and Stegun,
+ * table 25.6; exact to degree 9. */
+#define END (1 - 1e-9)
+static const double end_node[ORDER] = {
+    -END,
+    -0.765055323929465,
+    -0.285231516480645,
+    0.285231516480645,
+    0.765055323929465,
+    END,
+};
+static const double end_weight[ORDER] = {
+    0.066666666666667, 0.378474956297847, 0.554858377035486,
+    0.554858377035486, 0.378474956297847, 0.066666666666667,
+};
+
+/* How far it may be off, in tolerances, before a leaf is split for it: on
+ * smooth functions it is worse than the other rule. */
+static const double ends_limit = 10;
+
 /* What a rule found on a rectangle. */
 struct found {
     double value[PARTS];
-    double height; /* the largest |f| at a node */
+    double height;  /* the largest |f| at a node */
+    double bend[2]; /* of a rule with ends: second differences along x and
+                       along y, summed up */
 };
 
 struct leaf {
@@ -54,22 +77,30 @@ struct work {
     size_t leaves, size;
 };
 
-/* The rule on n rectangles, at most RULES. */
-static void rules(struct work *w, const struct rectangle *r, size_t n,
-                  struct found *found)
+/* Asks for the values at the nodes of n rectangles, at most RULES. */
+static void ask(struct work *w, const struct rectangle *r, size_t n,
+                const double at_node[ORDER])
 {
     struct room *a = w->room;
     for (size_t at = 0; at < n; at++) {
         const double dx = (r[at].x1 - r[at].x0) / 2;
         const double dy = (r[at].y1 - r[at].y0) / 2;
         for (int i = 0; i < ORDER; i++) {
-            a->x[at][i] = r[at].x0 + dx * (1 + node[i]);
-            a->y[at][i] = r[at].y0 + dy * (1 + node[i]);
+            a->x[at][i] = r[at].x0 + dx * (1 + at_node[i]);
+            a->y[at][i] = r[at].y0 + dy * (1 + at_node[i]);
         }
     }
     w->f(w->context, n, (const double(*)[ORDER])a->x,
          (const double(*)[ORDER])a->y, a->value);
     *w->budget -= (long)(n * NODES);
+}
+
+/* The rule on n rectangles. */
+static void rules(struct work *w, const struct rectangle *r, size_t n,
+                  struct found *found)
+{
+    const struct room *a = w->room;
+    ask(w, r, n, node);
     for (size_t at = 0; at < n; at++) {
         const double area = (r[at].x1 - r[at].x0) * (r[at].y1 - r[at].y0) / 4;
         found[at].height = 0;
@@ -84,6 +115,34 @@ static void rules(struct work *w, const struct rectangle *r, size_t n,
                 }
                 sum += node_weight[i] * row;
             }
+            found[at].value[part] = area * sum;
+        }
+    }
+}
+
+/* The rule with ends on n rectangles. */
+static void rules_with_ends(struct work *w, const struct rectangle *r, size_t n,
+                            struct found *found)
+{
+    const struct room *a = w->room;
+    ask(w, r, n, end_node);
+    for (size_t at = 0; at < n; at++) {
+        const double area = (r[at].x1 - r[at].x0) * (r[at].y1 - r[at].y0) / 4;
+        found[at].bend[0] = found[at].bend[1] = 0;
+        for (int part = 0; part < w->parts; part++) {
+            const double(*f)[ORDER] = (const double(*)[ORDER])(
+                a->value + ((size_t)part * n + at) * NODES);
+            double sum = 0;
+            for (int i = 0; i < ORDER; i++)
+                for (int k = 0; k < ORDER; k++)
+                    sum += end_weight[i] * end_weight[k] * f[i][k];
+            for (int i = 0; i < ORDER; i++)
+                for (int k = 1; k + 1 < ORDER; k++) {
+                    found[at].bend[0] +=
+                        fabs(f[k - 1][i] - 2 * f[k][i] + f[k + 1][i]);
+                    found[at].bend[1] +=
+                        fabs(f[i][k - 1] - 2 * f[i][k] + f[i][k + 1]);
+                }
             found[at].value[part] = area * sum;
         }
     }
@@ -148,27 +207,11 @@ static double disagreement(const struct work *w, const struct leaf *l,
     return most;
 }
 
-/* Accepts a leaf, or puts its worse halves on the stack. */
-static bool settle(struct work *w, const struct leaf *l,
-                   const struct found half[4])
+/* Puts the halves of a leaf along an axis on the stack. */
+static bool split(struct work *w, const struct leaf *l, bool along_x,
+                  const struct found half[4])
 {
-    double off_x[PARTS], off_y[PARTS];
-    const double x = disagreement(w, l, half, off_x);
-    const double y = disagreement(w, l, half + 2, off_y);
-    const double height = fmax(fmax(half[0].height, half[1].height),
-                               fmax(half[2].height, half[3].height));
-    /* A NaN is not looked into. */
-    if ((!(x + y > 1) && met(l, height)) || l->depth == DEPTH_MAX ||
-        *w->budget <= 0) {
-        for (int part = 0; part < w->parts; part++) {
-            l->out[part].value +=
-                l->whole.value[part] + off_x[part] + off_y[part];
-            l->out[part].error += fabs(off_x[part]) + fabs(off_y[part]);
-        }
-        return true;
-    }
-    /* Where nothing tells the axes apart, they take turns. */
-    const int axis = (x == y ? l->depth % 2 == 0 : x > y) ? 0 : 2;
+    const int axis = along_x ? 0 : 2;
     struct rectangle part[4];
     halves(l->r, part);
     struct leaf child = *l;
@@ -186,23 +229,109 @@ static bool settle(struct work *w, const struct leaf *l,
     return push(w, child);
 }
 
+/* What is known of a leaf: the sums over its halves, and the rule with ends. */
+struct known {
+    double off_x[PARTS], off_y[PARTS];
+    double x, y; /* the disagreements along both axes, in tolerances */
+    bool last;   /* it cannot be split any more */
+};
+
+static struct known know(const struct work *w, const struct leaf *l,
+                         const struct found half[4])
+{
+    struct known k;
+    k.x = disagreement(w, l, half, k.off_x);
+    k.y = disagreement(w, l, half + 2, k.off_y);
+    k.last = l->depth == DEPTH_MAX || *w->budget <= 0;
+    return k;
+}
+
+/* Whether all nodes agree. */
+static bool agrees(const struct known *k, const struct leaf *l,
+                   const struct found half[4])
+{
+    const double height = fmax(fmax(half[0].height, half[1].height),
+                               fmax(half[2].height, half[3].height));
+    /* A NaN is not looked into. */
+    return !(k->x + k->y > 1) && met(l, height);
+}
+
+/* How far the rule with ends is off, in tolerances: a jump nearer to an edge
+ * than the last node is seen by nothing else. */
+static double off_at_ends(const struct work *w, const struct leaf *l,
+                          const struct known *k, const struct found *ends)
+{
+    double most = 0;
+    for (int part = 0; part < w->parts; part++)
+        most = fmax(most, fabs(ends->value[part] - l->whole.value[part] -
+                               k->off_x[part] - k->off_y[part]));
+    return most / w->tolerance;
+}
+
+/* The axis along which values are out of line; in turns where both are, as at a
+ * corner. */
+static bool out_along_x(const struct found *ends, int depth)
+{
+    const double x = ends->bend[0], y = ends->bend[1];
+    return x > 2 * y || (!(y > 2 * x) && depth % 2 == 0);
+}
+
+static void accept(const struct work *w, const struct leaf *l,
+                   const struct known *k, double at_ends)
+{
+    for (int part = 0; part < w->parts; part++) {
+        l->out[part].value +=
+            l->whole.value[part] + k->off_x[part] + k->off_y[part];
+        l->out[part].error += fabs(k->off_x[part]) + fabs(k->off_y[part]);
+        if (at_ends > ends_limit)
+            l->out[part].error += at_ends * w->tolerance;
+    }
+}
+
 /* Refines the last leaves of the stack until it is empty. */
 static bool refine(struct work *w)
 {
     struct leaf taken[LEAVES];
+    struct known known[LEAVES];
     struct rectangle r[RULES];
-    struct found found[RULES];
+    struct found found[RULES], ends[LEAVES];
+    size_t agreed[LEAVES];
     while (w->leaves > 0) {
         const size_t n = w->leaves < LEAVES ? w->leaves : LEAVES;
+        size_t waiting = 0;
         w->leaves -= n;
         for (size_t i = 0; i < n; i++) {
             taken[i] = w->leaf[w->leaves + i];
             halves(taken[i].r, r + 4 * i);
         }
         rules(w, r, 4 * n, found);
-        for (size_t i = 0; i < n; i++)
-            if (!settle(w, &taken[i], found + 4 * i))
+        for (size_t i = 0; i < n; i++) {
+            const struct leaf *l = &taken[i];
+            known[i] = know(w, l, found + 4 * i);
+            const struct known *k = &known[i];
+            if (agrees(k, l, found + 4 * i))
+                agreed[waiting++] = i;
+            else if (k->last)
+                accept(w, l, k, 0);
+            /* Where nothing tells the axes apart, they take turns. */
+            else if (!split(w, l,
+                            k->x == k->y ? l->depth % 2 == 0 : k->x > k->y,
+                            found + 4 * i))
                 return false;
+        }
+        for (size_t i = 0; i < waiting; i++)
+            r[i] = taken[agreed[i]].r;
+        rules_with_ends(w, r, waiting, ends);
+        for (size_t i = 0; i < waiting; i++) {
+            const size_t at = agreed[i];
+            const double off = off_at_ends(w, &taken[at], &known[at], &ends[i]);
+            if (known[at].last || !(off > ends_limit))
+                accept(w, &taken[at], &known[at], off);
+            else if (!split(w, &taken[at],
+                            out_along_x(&ends[i], taken[at].depth),
+                            found + 4 * at))
+                return false;
+        }
     }
     return true;
 }
