@@ -146,8 +146,9 @@ static void suggest_missing_shares(struct guess *g, const struct clues *clues,
     }
     if (!overlaps || !(most < 1))
         return;
-    const bool lacks = low > 1 && low >= 0.99 / most && high <= 1.01 / least;
-    const bool other = high < 1 && low >= 0.99 * least && high <= 1.01 * most;
+    /* Of one lobe or of all: between its probability and 1. */
+    const bool lacks = low > 1 - 1e-6 && high <= 1.01 / least;
+    const bool other = high < 1 + 1e-6 && low >= 0.99 * least;
     if (lacks || other)
         suggest(g, 0.99, "missing lobe probability in %s",
                 lacks ? what : "what it is compared with (eval)");
