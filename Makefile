@@ -55,8 +55,9 @@ FOLDERS  := $(patsubst %/,%,$(wildcard bsdf/ validate/ plots/ integrator/))
 SOURCES  := $(foreach d,$(FOLDERS),$(wildcard $(d)/*.c))
 HEADERS  := $(foreach d,$(FOLDERS) tests,$(wildcard $(d)/*.h))
 TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
-BENCH    := $(wildcard tests/bench*.c)
-HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(BENCH),$(wildcard tests/*.c))
+# Programs of tests/ that `make test` does not run, each with its own target.
+LONG     := $(wildcard $(patsubst %,tests/%.c,bench mutants baselines))
+HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
 
 objects   = $(patsubst %.c,$(B)/obj/%.o,$(1))
 libof     = $(B)/lib$(1).a
@@ -321,6 +322,14 @@ bench: tools-found ## what calls, a chi-square and bin masses cost, as ratios an
 	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/bench
 	@build/bin/tests/bench
 
+# The seed is 1 and is printed; `make mutants SEED=2` takes another.
+SEED ?= 1
+
+.PHONY: mutants
+mutants: tools-found ## known mistakes: which check catches which, how small, and what it is said to be (SEED=1)
+	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/mutants
+	@build/bin/tests/mutants --seed $(SEED)
+
 .PHONY: golden
 golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)
 	@[ -x build/venv/bin/python ] || python3 -m venv build/venv
@@ -330,7 +339,7 @@ golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)
 
 # -- order --------------------------------------------------------------------
 
-C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(BENCH) $(HELPERS)
+C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(LONG) $(HELPERS)
 
 # Off where it is wrong about C: widths of products that are small, arrays of
 # pointers, OpenMP's clauses; or a matter of taste.
