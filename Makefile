@@ -330,6 +330,10 @@ mutants: tools-found ## known mistakes: which check catches which, how small, an
 	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/mutants
 	@build/bin/tests/mutants --seed $(SEED)
 
+.PHONY: mutants-tester
+mutants-tester: tools-found ## mistakes in the checks themselves: a test must notice each
+	@sh tests/mutate_tester.sh build/mutants-tester $(JOBS)
+
 .PHONY: golden
 golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)
 	@[ -x build/venv/bin/python ] || python3 -m venv build/venv

@@ -68,6 +68,16 @@ static double fresnel(const struct glass *m, double c, double n)
                        m->size);
 }
 
+/* 1 less that, with the digits that the difference would lose. */
+static double through(const struct glass *m, double co, double ci, double n)
+{
+    const double right = fresnel_dielectric_through(fmin(co, 1), ci, n);
+    return m->fault != UNORIENTED
+               ? right
+               : mixed(right, 1 - fresnel_dielectric(fmin(co, 1), m->eta, NULL),
+                       m->size);
+}
+
 struct turn {
     bool exists, reflects;
     struct vec3 h;
@@ -88,8 +98,7 @@ static struct turn turn_of(const struct glass *m, struct vec3 wo,
                m->fault == SAME_SIDE;
     t.co = fabs(t.co);
     t.ci = fabs(t.ci);
-    const double f = fresnel(m, t.co, t.n);
-    t.share = reflects ? f : 1 - f;
+    t.share = reflects ? fresnel(m, t.co, t.n) : through(m, t.co, t.ci, t.n);
     return t;
 }
 

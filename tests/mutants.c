@@ -20,8 +20,8 @@
 #include "bsdf/outfile.h"
 #include "tests/mutant_table.h"
 
-/* 2^-40 is about where doubles end for a value that is near 1. */
-enum { HALVINGS_MAX = 40, MANY = 128 };
+/* 2^-24 = 6e-8 is below what any check allows for rounding, 1e-7. */
+enum { HALVINGS_MAX = 24, MANY = 128 };
 
 struct request {
     struct plan plan;
@@ -72,6 +72,7 @@ struct outcome {
     double scale;              /* the smallest that failed; 0 if none did */
     struct mutant_found least; /* at that scale */
     char why[256];             /* it could not be run; or "" */
+    bool done;
 };
 
 static bool run_at(struct outcome *o, double scale, const struct plan *plan,
@@ -161,13 +162,18 @@ static void print_row(const struct outcome *o)
     for (int c = 0; c < checks_count(); c++)
         printf("%5s", cell(o, c));
     mutant_names(o->least.failed, names, sizeof names);
+    char size[40] = "-";
+    if (o->scale > 0 && o->m->way == MUTANT_FACTOR)
+        snprintf(size, sizeof size, "1%+.2g", mutant_size(o->m, o->scale) - 1);
+    else if (o->scale > 0 && o->m->way == MUTANT_SHARE)
+        snprintf(size, sizeof size, "%.2g", mutant_size(o->m, o->scale));
     if (o->scale == 0)
-        printf("  %-9s%-10s%-22s", "-", "-", "-");
+        printf("  %-9s", "-");
     else if (o->m->way == MUTANT_FIXED)
-        printf("  %-9s%-10s%-22s", "one size", "-", names);
+        printf("  %-9s", "one size");
     else
-        printf("  %-9.2g%-10.5g%-22s", o->scale, mutant_size(o->m, o->scale),
-               names);
+        printf("  %-9.2g", o->scale);
+    printf("%-11s%-22s", size, names[0] ? names : "-");
     printf(" %-13s%s", named(o), status_names[status_of(o)]);
     if (o->why[0])
         printf(": %s", o->why);
@@ -190,7 +196,7 @@ static void print_head(const struct request *r)
            (unsigned long long)r->plan.samples, r->plan.significance, "");
     for (int c = 0; c < checks_count(); c++)
         printf(" %.4s", checks[c]->name);
-    printf("  %-9s%-10s%-22s %-13s%s\n", "smallest", "size", "by", "diagnosis",
+    printf("  %-9s%-11s%-22s %-13s%s\n", "smallest", "size", "by", "diagnosis",
            "");
 }
 
@@ -312,12 +318,15 @@ int main(int argc, char **argv)
     r.plan.threads = 1;
     print_head(&r);
     fflush(stdout);
-#pragma omp parallel for schedule(dynamic, 1) ordered
+    int printed = 0;
+#pragma omp parallel for schedule(dynamic, 1)
     for (int i = 0; i < n; i++) {
         work(&o[i], &r.plan);
-#pragma omp ordered
+#pragma omp critical(print)
         {
-            print_row(&o[i]);
+            o[i].done = true;
+            while (printed < n && o[printed].done)
+                print_row(&o[printed++]);
             fflush(stdout);
         }
     }
