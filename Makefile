@@ -330,6 +330,11 @@ mutants: tools-found ## known mistakes: which check catches which, how small, an
 	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/mutants
 	@build/bin/tests/mutants --seed $(SEED)
 
+.PHONY: baselines
+baselines: tools-found ## the chi-square tests of three renderers beside ours, into the README too (SEED=1)
+	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/baselines
+	@build/bin/tests/baselines --seed $(SEED) --readme README.md
+
 .PHONY: mutants-tester
 mutants-tester: tools-found ## mistakes in the checks themselves: a test must notice each
 	@sh tests/mutate_tester.sh build/mutants-tester $(JOBS)

@@ -44,7 +44,12 @@ tests=$(mistakes | grep -F "$word" | cut -d'|' -f3 | tr ' ' '\n' | sort -u)
 
 mkdir -p "$folder" || exit 2
 folder=$(cd "$folder" && pwd) || exit 2
-# Sources alone, newer than what was made of the last ones where they differ.
+[ -n "$tests" ] || { echo "no mistake has \"$word\" in its line" >&2; exit 2; }
+
+# The sources as they are now; what was built of those of the last time stays.
+for old in "$folder"/*; do
+    [ "$old" = "$folder/build" ] || rm -rf "$old"
+done
 (cd "$here" && tar -cf - --exclude=./build --exclude=./.git .) |
     tar -xf - -C "$folder" || exit 2
 cd "$folder" || exit 2
