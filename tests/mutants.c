@@ -71,6 +71,7 @@ struct outcome {
     struct mutant_found at_1;  /* at the original size */
     double scale;              /* the smallest that failed; 0 if none did */
     struct mutant_found least; /* at that scale */
+    unsigned besides;          /* checks that failed at a smaller size alone */
     char why[256];             /* it could not be run; or "" */
     bool done;
 };
@@ -94,6 +95,9 @@ static void bisect(struct outcome *o, const struct plan *plan)
         struct mutant_found found;
         if (!run_at(o, ldexp(1, -middle), plan, &found))
             return;
+        /* What failed for no reason of the mistake's is none of its catches. */
+        o->besides |= found.failed & ~o->at_1.failed;
+        found.failed &= o->at_1.failed;
         if (found.failed) {
             low = middle;
             o->scale = ldexp(1, -low);
@@ -183,6 +187,10 @@ static void print_row(const struct outcome *o)
         printf(": %s", o->m->gap);
     else if (status_of(o) == CLOSED)
         printf(": the mark can go");
+    if (o->besides) {
+        mutant_names(o->besides, names, sizeof names);
+        printf(", and at a smaller size a false alarm of %s", names);
+    }
     printf("\n");
 }
 
@@ -237,7 +245,8 @@ static void write_rows(FILE *f, const struct request *r,
     for (int c = 0; c < checks_count(); c++)
         fprintf(f, "\t%s", checks[c]->name);
     fprintf(f, "\tsmallest scale\tsmallest size\tby\tstatus\tdiagnosis "
-               "expected\tdiagnosis given\tdiagnosis is\twhy\n");
+               "expected\tdiagnosis given\tdiagnosis is\twhy\tfalse alarms at "
+               "smaller sizes\n");
     for (int i = 0; i < n; i++) {
         const struct mutant *m = o[i].m;
         fprintf(f, "%s\t%s\t%s\t%s\t%s\t%g", m->bug, m->name,
@@ -259,7 +268,7 @@ static void write_rows(FILE *f, const struct request *r,
                     mutant_size(m, o[i].scale), names);
         else
             fprintf(f, "\t-\t-\t-");
-        fprintf(f, "\t%s\t%s\t%s\t%s\t%s\n", status_names[status_of(&o[i])],
+        fprintf(f, "\t%s\t%s\t%s\t%s\t%s", status_names[status_of(&o[i])],
                 m->diagnosis ? m->diagnosis : "-",
                 o[i].at_1.diagnosis[0] ? o[i].at_1.diagnosis : "-",
                 named(&o[i]),
@@ -268,6 +277,8 @@ static void write_rows(FILE *f, const struct request *r,
                 : m->blind  ? m->blind
                 : m->gap    ? m->gap
                             : "-");
+        mutant_names(o[i].besides, names, sizeof names);
+        fprintf(f, "\t%s\n", names[0] ? names : "-");
     }
 }
 
