@@ -58,8 +58,9 @@ FOLDERS  := $(patsubst %/,%,$(wildcard bsdf/ validate/ plots/ integrator/))
 SOURCES  := $(foreach d,$(FOLDERS),$(wildcard $(d)/*.c))
 HEADERS  := $(foreach d,$(FOLDERS) tests,$(wildcard $(d)/*.h))
 TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
-BENCH    := $(wildcard tests/bench*.c)
-HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(BENCH),$(wildcard tests/*.c))
+# Programs of tests/ that `make test` does not run, each with its own target.
+LONG     := $(wildcard $(patsubst %,tests/%.c,bench mutants baselines))
+HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
 
 # Loops over lanes, which see more of the registers with -O3.
 ifeq ($(config),release)
@@ -337,6 +338,23 @@ bench: tools-found ## what calls, a chi-square and bin masses cost, as ratios an
 	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/bench
 	@build/bin/tests/bench
 
+# The seed is 1 and is printed; `make mutants SEED=2` takes another.
+SEED ?= 1
+
+.PHONY: mutants
+mutants: tools-found ## known mistakes: which check catches which, how small, and what it is said to be (SEED=1)
+	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/mutants
+	@build/bin/tests/mutants --seed $(SEED)
+
+.PHONY: baselines
+baselines: tools-found ## the chi-square tests of three renderers beside ours, into the README too (SEED=1)
+	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/baselines
+	@build/bin/tests/baselines --seed $(SEED) --readme README.md
+
+.PHONY: mutants-tester
+mutants-tester: tools-found ## mistakes in the checks themselves: a test must notice each
+	@sh tests/mutate_tester.sh build/mutants-tester $(JOBS)
+
 .PHONY: golden
 golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)
 	@[ -x build/venv/bin/python ] || python3 -m venv build/venv
@@ -364,7 +382,7 @@ peer-mitsuba: all ## validate the BSDFs of Mitsuba 3, and why some fail (Python,
 
 # -- order --------------------------------------------------------------------
 
-C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(BENCH) $(HELPERS)
+C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(LONG) $(HELPERS)
 # What other programs include or compile by themselves, and so not linted here.
 ALONE   = $(wildcard validate/adapters/*.hpp tests/plugins/*.c tests/plugins/*.cpp)
 

@@ -1,27 +1,31 @@
-/* broken_glass.c - rough glass, a pane and a mixture, each with its mistakes */
+/* broken_glass.c - rough glass and a pane, each with its mistakes */
 #include "bsdf/fresnel.h"
 #include "bsdf/medium.h"
 #include "bsdf/ndf.h"
 #include "tests/broken.h"
 
+/* What is wrong is mixed in with a share of size, 1 if not given. */
 enum fault {
     NONE,
     JACOBIAN,    /* |wo.h| for n^2 |wi.h| in the pdf of refraction [1] */
     BACK_FACING, /* facets that face away are kept [1] */
+    NO_SIDES,    /* the pdf knows facets that the sampler refuses [2] */
     SAME_SIDE,   /* the refracted f is added on the side of wo [3] */
     UNORIENTED,  /* F with the index of the upper side, whatever side [4] */
     SWAPPED,     /* wi and wo are swapped in f and pdf [8] */
     NO_SHARE,    /* the pdf of refraction lacks 1 - F [20] */
+    G1_BELOW,    /* G1 is 0 below, in f [21] */
     NO_SQUARE,   /* f lacks the squared index of radiance */
 };
 
 static const char *const faults[] = {
-    "none",    "jacobian", "back_facing", "same_side", "unoriented",
-    "swapped", "no_share", "no_square",   NULL,
+    "none",      "jacobian",   "back_facing", "no_sides",
+    "same_side", "unoriented", "swapped",     "no_share",
+    "g1_below",  "no_square",  NULL,
 };
 
 struct glass {
-    double alpha, eta;
+    double alpha, eta, size;
     int fault;
 };
 
@@ -32,6 +36,8 @@ static const struct bsdf_param glass_params[] = {
       "index below" },
     { "fault", BSDF_CHOICE, offsetof(struct glass, fault), "none", 0, 0, faults,
       "what is wrong" },
+    { "size", BSDF_NUMBER, offsetof(struct glass, size), "1", 0, 1, NULL,
+      "share of it" },
     { 0 },
 };
 
@@ -48,10 +54,28 @@ static struct bsdf_claims glass_claims(const void *state,
     };
 }
 
+static double mixed(double right, double wrong, double share)
+{
+    return right + share * (wrong - right);
+}
+
 static double fresnel(const struct glass *m, double c, double n)
 {
-    return fresnel_dielectric(fmin(c, 1), m->fault == UNORIENTED ? m->eta : n,
-                              NULL);
+    const double right = fresnel_dielectric(fmin(c, 1), n, NULL);
+    return m->fault != UNORIENTED
+               ? right
+               : mixed(right, fresnel_dielectric(fmin(c, 1), m->eta, NULL),
+                       m->size);
+}
+
+/* 1 less that, with the digits that the difference would lose. */
+static double through(const struct glass *m, double co, double ci, double n)
+{
+    const double right = fresnel_dielectric_through(fmin(co, 1), ci, n);
+    return m->fault != UNORIENTED
+               ? right
+               : mixed(right, 1 - fresnel_dielectric(fmin(co, 1), m->eta, NULL),
+                       m->size);
 }
 
 struct turn {
@@ -74,8 +98,7 @@ static struct turn turn_of(const struct glass *m, struct vec3 wo,
                m->fault == SAME_SIDE;
     t.co = fabs(t.co);
     t.ci = fabs(t.ci);
-    const double f = fresnel(m, t.co, t.n);
-    t.share = reflects ? f : 1 - f;
+    t.share = reflects ? fresnel(m, t.co, t.n) : through(m, t.co, t.ci, t.n);
     return t;
 }
 
@@ -93,7 +116,7 @@ static double f_of(const struct glass *m, struct vec3 wo, struct vec3 wi,
                    bool reflects)
 {
     const struct turn t = turn_of(m, wo, wi, reflects);
-    if (!t.exists)
+    if (!t.exists || (m->fault == G1_BELOW && (wo.z <= 0 || wi.z <= 0)))
         return 0;
     const double common =
         t.share * d(m, t.h) * g1(m, wo) * g1(m, wi) / fabs(wo.z * wi.z);
@@ -105,7 +128,7 @@ static double f_of(const struct glass *m, struct vec3 wo, struct vec3 wi,
 static double pdf_of(const struct glass *m, struct vec3 wo, struct vec3 wi)
 {
     const struct turn t = turn_of(m, wo, wi, wo.z * wi.z > 0);
-    if (!t.exists || wo.z * wi.z == 0)
+    if ((!t.exists && m->fault != NO_SIDES) || wo.z * wi.z == 0)
         return 0;
     const double p = d(m, t.h) * t.h.z;
     if (t.reflects)
@@ -115,23 +138,42 @@ static double pdf_of(const struct glass *m, struct vec3 wo, struct vec3 wi)
     return (m->fault == NO_SHARE ? 1 : t.share) * p * jacobian;
 }
 
+static double f_as_is(const struct glass *m, struct vec3 wo, struct vec3 wi)
+{
+    const bool reflects = wo.z * wi.z > 0;
+    if (m->fault == SWAPPED)
+        return f_of(m, wi, wo, reflects);
+    return f_of(m, wo, wi, reflects) +
+           (m->fault == SAME_SIDE && reflects ? f_of(m, wo, wi, false) : 0);
+}
+
+static double pdf_as_is(const struct glass *m, struct vec3 wo, struct vec3 wi)
+{
+    return m->fault == SWAPPED ? pdf_of(m, wi, wo) : pdf_of(m, wo, wi);
+}
+
+/* The same without the fault.  F is mixed where it is made. */
+static struct glass mended(const struct glass *m)
+{
+    struct glass right = *m;
+    right.fault = m->fault == UNORIENTED ? UNORIENTED : NONE;
+    return right;
+}
+
 static struct spectrum glass_eval(const void *state, struct vec3 wo,
                                   struct vec3 wi)
 {
-    const struct glass *m = state;
+    const struct glass *m = state, right = mended(m);
     if (wo.z * wi.z == 0)
         return (struct spectrum){ { 0 } };
-    double f = m->fault == SWAPPED ? f_of(m, wi, wo, wo.z * wi.z > 0)
-                                   : f_of(m, wo, wi, wo.z * wi.z > 0);
-    if (m->fault == SAME_SIDE && wo.z * wi.z > 0)
-        f += f_of(m, wo, wi, false);
-    return spectrum_of(3, f);
+    return spectrum_of(
+        3, mixed(f_as_is(&right, wo, wi), f_as_is(m, wo, wi), m->size));
 }
 
 static double glass_pdf(const void *state, struct vec3 wo, struct vec3 wi)
 {
-    const struct glass *m = state;
-    return m->fault == SWAPPED ? pdf_of(m, wi, wo) : pdf_of(m, wo, wi);
+    const struct glass *m = state, right = mended(m);
+    return mixed(pdf_as_is(&right, wo, wi), pdf_as_is(m, wo, wi), m->size);
 }
 
 static struct bsdf_sample glass_sample(const void *state, struct vec3 wo,
@@ -177,7 +219,7 @@ const struct bsdf_type type_broken_glass = {
 };
 
 struct pane {
-    double eta;
+    double eta, size;
     int fault;
 };
 
@@ -189,6 +231,8 @@ static const struct bsdf_param pane_params[] = {
       "index of the pane" },
     { "fault", BSDF_CHOICE, offsetof(struct pane, fault), "none", 0, 0,
       pane_faults, "what is wrong" },
+    { "size", BSDF_NUMBER, offsetof(struct pane, size), "1", 0, 1, NULL,
+      "share of it" },
     { 0 },
 };
 
@@ -203,19 +247,28 @@ static struct bsdf_claims pane_claims(const void *state,
                                  .eta = 1 };
 }
 
+/* What the front and the back of a pane reflect together. */
+static double pane_all(const struct pane *m, double c)
+{
+    const double r = fresnel_dielectric(c, m->eta, NULL);
+    return 2 * r / (1 + r);
+}
+
 /* Half of what is reflected is absorbed. */
 static struct bsdf_sample pane_sample(const void *state, struct vec3 wo,
                                       struct vec3 u)
 {
     const struct pane *m = state;
-    const double c = m->fault == SIGNED ? wo.z : fabs(wo.z);
-    const double r = fresnel_dielectric(fmin(c, 1), m->eta, NULL);
-    const double tint = 0.5, all = 2 * r / (1 + r);
+    const double tint = 0.5, c = fmin(fabs(wo.z), 1);
     if (wo.z == 0)
         return (struct bsdf_sample){ 0 };
+    double all = pane_all(m, c);
+    if (m->fault == SIGNED)
+        all = mixed(all, pane_all(m, fmin(wo.z, 1)), m->size);
     const bool reflects = u.z < all;
-    const double through =
-        m->fault == COMPLEMENT ? (1 - tint * all) / (1 - all) : 1;
+    const double through = m->fault == COMPLEMENT
+                               ? mixed(1, (1 - tint * all) / (1 - all), m->size)
+                               : 1;
     return (struct bsdf_sample){
         .wi =
             reflects ? (struct vec3){ -wo.x, -wo.y, wo.z } : vec3_scale(-1, wo),
@@ -232,71 +285,4 @@ const struct bsdf_type type_broken_pane = {
     .size = sizeof(struct pane),
     .claims = pane_claims,
     .sample = pane_sample,
-};
-
-struct mix {
-    struct bsdf *a, *b;
-    int fault;
-};
-
-enum { ONE_LOBE = 1 };
-static const char *const mix_faults[] = { "none", "one_lobe", NULL };
-static const struct bsdf_param mix_params[] = {
-    { "a", BSDF_NESTED, offsetof(struct mix, a), "(diffuse)", 0, 0, NULL,
-      "half of it" },
-    { "b", BSDF_NESTED, offsetof(struct mix, b), "(roughconductor:alpha=0.3)",
-      0, 0, NULL, "the other half" },
-    { "fault", BSDF_CHOICE, offsetof(struct mix, fault), "none", 0, 0,
-      mix_faults, "what is wrong" },
-    { 0 },
-};
-
-static struct bsdf_claims mix_claims(const void *state,
-                                     const struct bands *bands)
-{
-    (void)state, (void)bands;
-    return (struct bsdf_claims){ .lobes = BSDF_DIFFUSE_REFLECTION |
-                                          BSDF_GLOSSY_REFLECTION,
-                                 .reciprocal = true,
-                                 .eta = 1 };
-}
-
-static struct spectrum mix_eval(const void *state, struct vec3 wo,
-                                struct vec3 wi)
-{
-    const struct mix *m = state;
-    const struct spectrum a = bsdf_eval(m->a, wo, wi);
-    struct spectrum f = bsdf_eval(m->b, wo, wi);
-    for (int i = 0; i < 3; i++)
-        f.band[i] = (a.band[i] + f.band[i]) / 2;
-    return f;
-}
-
-static double mix_pdf(const void *state, struct vec3 wo, struct vec3 wi)
-{
-    const struct mix *m = state;
-    return (bsdf_pdf(m->a, wo, wi) + bsdf_pdf(m->b, wo, wi)) / 2;
-}
-
-static struct bsdf_sample mix_sample(const void *state, struct vec3 wo,
-                                     struct vec3 u)
-{
-    const struct mix *m = state;
-    struct bsdf_sample s = bsdf_sample(u.z < 0.5 ? m->a : m->b, wo, u);
-    if (m->fault == ONE_LOBE || !(s.pdf > 0))
-        return s;
-    s.pdf = mix_pdf(m, wo, s.wi);
-    s.weight = spectrum_scale(fabs(s.wi.z) / s.pdf, mix_eval(m, wo, s.wi));
-    return s;
-}
-
-const struct bsdf_type type_broken_mix = {
-    .name = "broken_mix",
-    .about = "two models mixed, with a fault",
-    .params = mix_params,
-    .size = sizeof(struct mix),
-    .claims = mix_claims,
-    .eval = mix_eval,
-    .pdf = mix_pdf,
-    .sample = mix_sample,
 };
