@@ -43,7 +43,7 @@ static const double end_weight[ORDER] = {
 
 /* How far it may be off, in tolerances, before a leaf is split for it: on
  * smooth functions it is worse than the other rule. */
-static const double ends_limit = 10;
+static const double ends_limit = 2;
 
 /* What a rule found on a rectangle. */
 struct found {
@@ -287,7 +287,7 @@ static void accept(const struct work *w, const struct leaf *l,
         l->out[part].value +=
             l->whole.value[part] + k->off_x[part] + k->off_y[part];
         l->out[part].error += fabs(k->off_x[part]) + fabs(k->off_y[part]);
-        if (at_ends > 1)
+        if (at_ends > ends_limit)
             l->out[part].error += at_ends * w->tolerance;
     }
 }

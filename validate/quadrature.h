@@ -4,7 +4,7 @@
  * sums over its halves along x and along y, and split along the worse of the
  * two until both agree with it; so a jump along an axis costs a bisection.  The
  * value is corrected by both differences, and they are taken for the error.
- * Then a 6 x 6 Lobatto rule must agree as well, within ten times the tolerance:
+ * Then a 6 x 6 Lobatto rule must agree as well, within twice the tolerance:
  * its nodes are others and reach the edges, so that neither a jump just inside
  * an edge nor a ridge between nodes is missed for long.
  *
