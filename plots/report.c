@@ -71,6 +71,20 @@ static void element(FILE *out, const char *tag, const char *bytes)
     fprintf(out, "</%s>", tag);
 }
 
+/* A spec, which may go on in the next line behind its punctuation. */
+static void spec_html(FILE *out, const char *spec)
+{
+    while (*spec) {
+        const size_t n = strcspn(spec, ":,("), all = n + (spec[n] != '\0');
+        char *part = strndup(spec, all);
+        html(out, part ? part : "");
+        free(part);
+        spec += all;
+        if (*spec)
+            fputs("<wbr/>", out);
+    }
+}
+
 /* A word of a command for the shell, in quotes where it needs them. */
 static void shell_word(FILE *out, const char *word)
 {
@@ -205,8 +219,9 @@ static const char style[] =
     "thead th{background:#f4f4f4;position:sticky;top:0}"
     ".n{text-align:right;font-variant-numeric:tabular-nums}"
     "td.wide{white-space:normal;min-width:16rem}"
-    "th.spec{font-weight:400;white-space:normal;min-width:9rem;"
+    "th.spec{font-weight:400;white-space:normal;min-width:10.5rem;"
     "max-width:24rem;background:#fff}"
+    "@media(min-width:60rem){th.spec{min-width:14rem}}"
     "td.good{background:#e3f0f9;color:#00456b}"
     "td.bad{background:#fdeadd;color:#8a3200;font-weight:600}"
     "td.none{color:#6a6a6a}"
@@ -305,9 +320,9 @@ static void cell(FILE *out, const struct verdict *v)
     fprintf(out, "<td class=\"%s\">%s %s", class_of(v), sign_of(v), word_of(v));
     if (v && v->applies) {
         fputs("<small>", out);
-        number(out, v->value, "%.3g");
+        number(out, v->value, "%.2g");
         fprintf(out, " %s ", v->passed ? "≤" : "&gt;");
-        number(out, v->limit, "%.3g");
+        number(out, v->limit, "%.2g");
         fputs("</small><small>", out);
         direction(out, v->wo);
         fputs("</small>", out);
@@ -329,7 +344,7 @@ static void overview(const struct page *p)
     for (struct span s = { 0, 0 }; s.last < r->results;) {
         s = span_next(r, s.last);
         fputs("<tr><th class=\"spec\">", out);
-        html(out, r->result[s.first].spec);
+        spec_html(out, r->result[s.first].spec);
         fputs("</th>", out);
         for (size_t c = 0; c < p->columns; c++)
             cell(out, worst_of(r, s, c));
@@ -635,8 +650,9 @@ static void failing(struct page *p)
         if (failures(p, s) == 0)
             continue;
         fputs("<section>", out);
-        element(out, "h3", r->result[s.first].spec);
-        fputc('\n', out);
+        fputs("<h3>", out);
+        spec_html(out, r->result[s.first].spec);
+        fputs("</h3>\n", out);
         for (size_t c = 0; c < p->columns; c++)
             if (fails(worst_of(r, s, c)))
                 failure(p, s, c);
@@ -668,7 +684,7 @@ static void model(const struct page *p, struct span s)
     const struct recorded *r = p->r;
     const size_t bad = failures(p, s);
     fprintf(out, "<details><summary>%s <span class=\"spec\">", bad ? "✗" : "✓");
-    html(out, r->result[s.first].spec);
+    spec_html(out, r->result[s.first].spec);
     fprintf(out,
             "</span></summary>\n"
             "<div class=\"scroll\"><table><thead><tr><th>check</th>"
