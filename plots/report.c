@@ -21,7 +21,7 @@
 #include "validate/report.h"
 
 enum {
-    PICTURES_MAX = 12,
+    MODELS_MAX = 6,  /* that pictures are drawn for, two each */
     WORST_MAX = 5,   /* directions of a check that fails */
     COLUMNS_MAX = 64 /* checks */
 };
@@ -33,7 +33,7 @@ struct page {
     const char *file; /* the report's path */
     const char *folder;
     size_t columns; /* checks of the first result */
-    int pictures;
+    int pictures, drawn_models;
 };
 
 /* -- text ------------------------------------------------------------------ */
@@ -343,7 +343,7 @@ static void overview(const struct page *p)
     fputs("</tr></thead>\n<tbody>\n", out);
     for (struct span s = { 0, 0 }; s.last < r->results;) {
         s = span_next(r, s.last);
-        fputs("<tr><th class=\"spec\">", out);
+        fprintf(out, "<tr><th class=\"spec\">%s ", failures(p, s) ? "✗" : "✓");
         spec_html(out, r->result[s.first].spec);
         fputs("</th>", out);
         for (size_t c = 0; c < p->columns; c++)
@@ -421,12 +421,12 @@ static void pictures_of(struct page *p, const struct recorded_result *one)
     FILE *out = p->out;
     char path[4200];
     struct err why = { "" };
-    if (p->pictures + 2 > PICTURES_MAX) {
+    if (p->drawn_models == MODELS_MAX) {
         fprintf(out,
-                "<p>No picture: the page has its %d. <code>bsdf-plot "
-                "histogram</code> and <code>bsdf-plot lobe</code> draw "
-                "more.</p>\n",
-                PICTURES_MAX);
+                "<p>No picture: there are some for the first %d models that "
+                "fail. <code>bsdf-plot histogram</code> and <code>bsdf-plot "
+                "lobe</code> draw more.</p>\n",
+                MODELS_MAX);
         return;
     }
     struct bsdf *b =
@@ -441,6 +441,7 @@ static void pictures_of(struct page *p, const struct recorded_result *one)
         fputs(".</p>\n", out);
         return;
     }
+    p->drawn_models++;
     const uint64_t n = p->r->plan.samples;
     struct plot_request r = {
         .bsdf = b,
@@ -499,6 +500,18 @@ static void command(const struct page *p, const struct recorded_result *one,
     } else {
         fprintf(out, "--rgb %s",
                 r->bands.kind == BANDS_RGB_FIT ? "fit" : "average");
+    }
+    if (r->plan.significance != plan_default.significance)
+        fprintf(out, " --significance %.17g", r->plan.significance);
+    if (r->plan.escalations != plan_default.escalations)
+        fprintf(out, " --escalations %d", r->plan.escalations);
+    for (size_t i = 0; i < r->skips; i++) {
+        fputs(" --skip ", out);
+        shell_word(out, r->skip[i]);
+    }
+    if (r->ior_path) {
+        fputs(" --ior-path ", out);
+        shell_word(out, r->ior_path);
     }
     fputs("</pre>\n<pre>bsdf-validate --replay ", out);
     shell_word(out, p->file);
@@ -642,9 +655,9 @@ static void failing(struct page *p)
         fprintf(out,
                 "<p>The first command below a table runs its worst direction "
                 "alone, with the limits of so small a run; the second one the "
-                "whole run again, to the last bit. At most %d pictures are "
-                "drawn.</p>\n",
-                PICTURES_MAX);
+                "whole run again, to the last bit. Pictures are drawn for at "
+                "most %d models.</p>\n",
+                MODELS_MAX);
     for (struct span s = { 0, 0 }; s.last < r->results;) {
         s = span_next(r, s.last);
         if (failures(p, s) == 0)

@@ -327,7 +327,7 @@ static void wrong_requests_are_refused(void **state)
     refused("bsdf-plot lobes diffuse --wo 1,0", "\"lobes\"",
             "did you mean \"lobe\"?");
     refused("bsdf-plot none diffuse --wo 1,0", "\"none\"",
-            "lobe, lobe3d, histogram, ior");
+            "lobe, lobe3d, histogram, ior, report");
     refused("bsdf-plot", "kind", "SPEC");
     refused("bsdf-plot lobe", "lobe", "SPEC");
     refused("bsdf-plot lobe diffuse", "--wo", "degrees");
