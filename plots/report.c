@@ -243,7 +243,10 @@ static const char style[] =
     "@media print{body{max-width:none;font-size:11px}.scroll{overflow:visible;"
     "border:0}th,td{white-space:normal;padding:.15rem .25rem}"
     "table{font-size:.7rem}article,figure,tr{break-inside:avoid}"
-    "thead th{position:static}"
+    "thead th{position:static}th,td{overflow-wrap:normal}"
+    "td small{display:none}th.spec{min-width:0;overflow-wrap:anywhere}"
+    "details:not([open])::details-content{content-visibility:visible;"
+    "block-size:auto}"
     "*{print-color-adjust:exact}}";
 
 static void term(FILE *out, const char *what, const char *text)
@@ -452,7 +455,11 @@ static void pictures_of(struct page *p, const struct recorded_result *one)
         .output = path,
     };
     fputs("<div class=\"pictures\">\n", out);
-    for (size_t k = 0; k < 2; k++) {
+    const bool single = !(bsdf_claims(b).lobes & ~(unsigned)BSDF_DELTA);
+    if (single)
+        fputs("<p>No map of samples: this model has only delta lobes.</p>\n",
+              out);
+    for (size_t k = single; k < 2; k++) {
         snprintf(path, sizeof path, "%s/%s.svg", p->folder, kind[k]->name);
         if (!draw(p, kind[k], &r, &why)) {
             fputs("<p>No picture: ", out);
@@ -628,19 +635,28 @@ static void failure(const struct page *p, struct span s, size_t column)
     fputs("</article>\n", out);
 }
 
-/* The result whose worst failure is the worst by its own limit. */
+/* The result with most failures, and the worst by its own limit of those. */
 static size_t worst_result(const struct page *p, struct span s)
 {
-    size_t worst = s.first;
-    const struct verdict *most = NULL;
-    for (size_t i = s.first; i < s.last; i++)
+    size_t worst = s.first, most = 0;
+    const struct verdict *by = NULL;
+    for (size_t i = s.first; i < s.last; i++) {
+        const struct verdict *own = NULL;
+        size_t n = 0;
         for (size_t c = 0; c < p->columns; c++) {
             const struct verdict *v = verdict_at(p->r, i, c);
-            if (fails(v) && (!most || report_worse(v, most))) {
-                most = v;
-                worst = i;
-            }
+            if (!fails(v))
+                continue;
+            n++;
+            if (!own || report_worse(v, own))
+                own = v;
         }
+        if (n > most || (n > 0 && n == most && report_worse(own, by))) {
+            worst = i;
+            most = n;
+            by = own;
+        }
+    }
     return worst;
 }
 
