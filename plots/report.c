@@ -8,6 +8,7 @@
  * Pictures are made for some of the models that fail, from their worst
  * direction: what is sampled against what the pdf says, and the lobe.
  */
+#include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -609,9 +610,10 @@ static size_t worst_few(const struct recorded *r, struct span s, size_t column,
 static void failure(const struct page *p, struct span s, size_t column)
 {
     FILE *out = p->out;
-    const struct verdict *few[WORST_MAX];
+    const struct verdict *few[WORST_MAX] = { NULL };
     const size_t n = worst_few(p->r, s, column, few);
     size_t all = 0;
+    assert(n > 0);
     for (size_t i = s.first; i < s.last; i++)
         all += fails(verdict_at(p->r, i, column));
     fputs("<article><h4>✗ ", out);

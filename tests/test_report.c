@@ -534,6 +534,12 @@ static void malformed_reports_are_refused(void **state)
     malformed(deep, 200000, "depth");
     free(deep);
     free(text);
+    json_t *none = json_copy(root);
+    json_object_set_new(none, "results", json_array());
+    text = json_dumps(none, 0);
+    malformed(text, strlen(text), "results is an array; expected at least one");
+    free(text);
+    json_decref(none);
     json_t *result = json_array_get(results, 0);
     json_t *verdict = json_array_get(json_object_get(result, "verdicts"), 10);
     spoil(root, root, "");

@@ -311,6 +311,8 @@ static bool results_read(struct recorded *r, const struct node *root)
 {
     const struct node array = array_at(root, "results");
     const size_t n = json_array_size(array.json);
+    if (n == 0)
+        wrong(&array, "at least one result");
     r->result = calloc(n + 1, sizeof *r->result);
     for (size_t i = 0; r->result && root->reader->ok && i < n; i++) {
         const struct node one = element(&array, i);

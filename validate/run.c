@@ -158,7 +158,9 @@ static bool run_stages(struct run *run, run_progress *progress, void *context,
                         .context = context,
                         .ok = true,
                         .err = err };
-    bool ok = l.marked || err_set(err, "out of memory");
+    bool ok = l.marked;
+    if (!ok)
+        err_set(err, "out of memory");
     double left = run->plan.significance;
     for (l.stage = 0; ok && l.stage <= run->plan.escalations; l.stage++) {
         size_t marked = 0;
