@@ -34,15 +34,18 @@ CPPFLAGS ?=
 LDFLAGS  ?=
 WARN     := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes \
             -Wmissing-prototypes -Wvla -Wno-missing-field-initializers
+# libxml2's headers lie in a folder of their own, which its own script knows.
+XML2     := $(firstword $(filter -I%,$(shell xml2-config --cflags 2>/dev/null)) \
+              -I/usr/include/libxml2)
 # Multiply and add stay apart, so that the scalar and the batch path agree to
 # the last bit.  Nobody reads the exception flags, and without them a loop may
 # compute both sides of a condition.  c17 hides POSIX, which _GNU_SOURCE brings
 # back.
 LANGUAGE := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno \
             -fno-trapping-math -fopenmp -I. \
-            -DBSDF_DATA_DIR='"$(CURDIR)/data"'
+            -DBSDF_DATA_DIR='"$(CURDIR)/data"' $(XML2)
 COMPILE   = $(CC) $(LANGUAGE) $(FLAGS) $(WARN) $(CPPFLAGS) $(CFLAGS)
-LIBS     := -lgsl -lgslcblas -lyaml -ljansson -ldl -lm
+LIBS     := -lxml2 -lgsl -lgslcblas -lyaml -ljansson -ldl -lm
 
 # `make V=1` shows the commands.
 SAY := @printf '  %-5s %s\n'
@@ -125,6 +128,7 @@ library gsl/gsl_cdf.h      -lgsl,-lgslcblas,-lm libgsl-dev
 library Random123/philox.h -lm                  librandom123-dev
 library yaml.h             -lyaml               libyaml-dev
 library jansson.h          -ljansson            libjansson-dev
+library libxml/xmlwriter.h $(XML2),-lxml2 libxml2-dev
 library cmocka.h           -lcmocka             libcmocka-dev
 library omp.h              -fopenmp             $(if $(findstring clang,$(CC)),libomp-dev,gcc)
 tool    gnuplot            -                    gnuplot-nox
@@ -223,6 +227,7 @@ INSTALLED := $(foreach f,$(PROGRAMS:$(B)/bin/%=%),$(STAGE)/$(f)=bin/$(f)) \
              $(STAGE)/libbsdf.pc=lib/pkgconfig/libbsdf.pc \
              $(foreach f,$(PUBLIC),$(f)=include/$(f)) \
              validate/adapters/course.hpp=include/bsdf/course.hpp \
+             validate/report.schema.json=share/bsdf/report.schema.json \
              $(foreach f,$(TABLES),$(f)=share/bsdf/$(f))
 
 # One word that starts with a slash.
@@ -230,7 +235,7 @@ CHECK_PREFIX = $(if $(filter 1/,$(words $(PREFIX))$(patsubst /%,/,$(PREFIX))),,$
                $(error PREFIX=$(PREFIX): expected an absolute path without spaces))
 
 .PHONY: install uninstall always
-install: tools-found $(STAGED) ## programs, libbsdf, headers and tables, to PREFIX=/usr/local (and DESTDIR)
+install: tools-found $(STAGED) ## programs, libbsdf, headers, tables and the schema of reports, to PREFIX=/usr/local (and DESTDIR)
 	@for f in $(INSTALLED); do \
 	    to="$(DESTDIR)$(PREFIX)/$${f#*=}"; \
 	    case $$f in *=bin/*) mode=755;; *) mode=644;; esac; \

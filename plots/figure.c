@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "plots/table.h"
+#include "bsdf/utf8.h"
 
 /* gnuplot's settings for a page of %g by %g pixels, such that letters and lines
  * look the same in all three.  Viewers of SVG blur an image, and cairo leaves
@@ -130,7 +130,7 @@ static size_t line_length(const char *text)
 /* The spec in lines, as a string of the script; returns how many. */
 static int title_wrap(FILE *out, const char *spec)
 {
-    char *plain = table_plain(spec);
+    char *plain = utf8_plain(spec);
     int lines = 0;
     for (const char *at = plain ? plain : ""; *at && lines < LINES_MAX;
          lines++) {

@@ -12,6 +12,7 @@
 
 #include "bsdf/cli.h"
 #include "bsdf/colour.h"
+#include "bsdf/utf8.h"
 #include "plots/axis.h"
 #include "plots/key.h"
 #include "plots/kinds.h"
@@ -310,7 +311,7 @@ static void key_entries(const struct constants *all, struct key_entry *entry)
 {
     for (int i = 0; i < all->curves; i++) {
         const struct curve *c = &all->curve[i];
-        char *plain = table_plain(c->name);
+        char *plain = utf8_plain(c->name);
         entry[i] = (struct key_entry){ .look = "" };
         snprintf(entry[i].look, sizeof entry[i].look,
                  "nohead lc rgb \"%s\" dt %s lw 1.8", hue[i], dash[i]);
@@ -339,7 +340,7 @@ static void cite(struct cited *out, const char *names, const char *reference)
     joined[n] = '\0';
     snprintf(all, sizeof all, "%s: %s", names,
              n > 0 ? joined : "no reference on the page");
-    char *plain = table_plain(all), *at = plain;
+    char *plain = utf8_plain(all), *at = plain;
     while (at && *at && out->lines < CITED_MAX) {
         size_t bytes = 0, letters = 0, space = 0;
         for (; at[bytes]; bytes++) {

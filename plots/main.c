@@ -17,7 +17,8 @@ enum {
     OPT_WO,
     OPT_SEED,
     OPT_SAMPLES,
-    OPT_RANGE
+    OPT_RANGE,
+    OPT_PROGRAMS
 };
 
 struct request {
@@ -39,7 +40,9 @@ static const char about[] =
 static const struct argp_option options[] = {
     { "wo", OPT_WO, "THETA,PHI", 0, "outgoing direction [deg]", 0 },
     { "output", 'o', "FILE", 0,
-      "ends in .svg, .pdf or .png; KIND.svg if not given", 0 },
+      "ends in .svg, .pdf or .png, for a report in .html; KIND.svg if not "
+      "given",
+      0 },
     { "samples", OPT_SAMPLES, "N", 0, "drawn for a histogram, 1000 to 1e9; 1e6",
       0 },
     { "seed", OPT_SEED, "S", 0, "of the random numbers; 1", 0 },
@@ -49,6 +52,8 @@ static const struct argp_option options[] = {
       0 },
     { "range", OPT_RANGE, "LO,HI", 0,
       "of wavelengths in nm; what there is from 360 to 830", 0 },
+    { "programs", OPT_PROGRAMS, 0, 0,
+      "a report may start the programs and plugins that its specs name", 0 },
     { "ior-path", OPT_IOR_PATH, "DIR", 0,
       "a refractiveindex.info database (or BSDF_IOR_PATH)", 0 },
     { 0 },
@@ -88,6 +93,9 @@ static error_t option(int key, char *arg, struct argp_state *state)
         break;
     case OPT_RANGE:
         ok = range_read(&r->plot, arg, &err);
+        break;
+    case OPT_PROGRAMS:
+        r->plot.programs = true;
         break;
     case OPT_IOR_PATH:
         ok = cli_ior_path(arg, &err);
@@ -186,8 +194,9 @@ static bool answered(const struct bsdf *b, struct err *err)
 static bool draw_of(const struct plot *plot, struct request *r,
                     struct figure_made *made, struct err *err)
 {
-    if (plot->subject == PLOT_PAGES) {
-        r->plot.pages = r->arg[1];
+    if (plot->subject != PLOT_MODEL) {
+        *(plot->subject == PLOT_RUN ? &r->plot.file : &r->plot.pages) =
+            r->arg[1];
         return plot->run(&r->plot, made, err);
     }
     struct bsdf *b = foreign_new(r->arg[1], &r->plot.bands, err);
@@ -213,11 +222,16 @@ static bool draw(struct request *r, struct figure_made *made, struct err *err)
     const bool model = plot->subject == PLOT_MODEL;
     if (r->args == 1)
         return err_set(err, "%s: expected %s", plot->name,
-                       model ? "a SPEC" : "a NAME, or several: NAME,NAME");
+                       model                       ? "a SPEC"
+                       : plot->subject == PLOT_RUN ? "a FILE of bsdf-validate "
+                                                     "--json"
+                                                   : "a NAME, or several: "
+                                                     "NAME,NAME");
     if (model && !r->has_wo)
         return err_set(err, "%s: expected --wo THETA,PHI in degrees",
                        plot->name);
-    snprintf(name, sizeof name, "%s.svg", plot->name);
+    snprintf(name, sizeof name, "%s%s", plot->name,
+             plot->extension ? plot->extension : ".svg");
     if (!r->plot.output)
         r->plot.output = name;
     return draw_of(plot, r, made, err);
@@ -233,8 +247,8 @@ int main(int argc, char **argv)
     gsl_set_error_handler_off();
     argp_err_exit_status = EXIT_REQUEST;
     argp_parse(&(struct argp){ options, option,
-                               "KIND SPEC\nKIND NAME[,NAME...]", about, 0, help,
-                               0 },
+                               "KIND SPEC\nKIND NAME[,NAME...]\nreport FILE",
+                               about, 0, help, 0 },
                argc, argv, 0, NULL, &r);
     bool ok = draw(&r, &made, &err);
     for (int i = 0; i < made.paths; i++)

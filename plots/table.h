@@ -11,12 +11,7 @@
 
 #include "bsdf/bsdf.h"
 
-/** The text in one line of printable UTF-8: every byte that is not part of it,
- * and every control character, becomes \xHH.  NULL when out of memory; owned
- * by the caller. */
-char *table_plain(const char *text);
-
-/** Writes "# what: text", the text as table_plain has it. */
+/** Writes "# what: text", the text as utf8_plain has it. */
 void table_comment(FILE *out, const char *what, const char *text);
 
 /** Writes the comments that every table has: program, spec, wo, bands. */

@@ -225,6 +225,8 @@ static void wrong_requests_are_status_two(void **state)
     refused("bsdf-validate diffuse --significance 0", "--significance 0", "");
     refused("bsdf-validate diffuse --significance nan", "nan", "");
     refused("bsdf-validate diffuse --threads 0", "--threads 0", "");
+    refused("bsdf-validate diffuse --escalations 5", "--escalations 5", "4");
+    refused("bsdf-validate diffuse --skip chi", "did you mean \"chi2\"", "");
 }
 
 static void malformed_pages_are_status_two(void **state)
@@ -260,16 +262,16 @@ static void validate_says_sound_or_not(void **state)
     assert_int_equal(sh("bsdf-validate diffuse mirror --samples 1e4 "
                         "--json $T/v.json"),
                      0);
-    assert_has(output, "\n65 passed, 0 failed\n");
+    assert_has(output, "\n90 passed, 0 failed\n");
     assert_has(output, "seed 1,");
     assert_int_equal(sh("grep -c '\"verdict\": \"pass\"' $T/v.json"), 0);
-    assert_string_equal(output, "65\n");
+    assert_string_equal(output, "90\n");
     assert_int_equal(sh("bsdf-validate course_microfacet:material=Au "
                         "--nm 614,549,466 "
                         "--samples 1e4 --wo 85,0 --json $T/v.json"),
                      1);
     assert_has(output, "1.32784/1.14691/0.644822");
-    assert_has(output, "\n5 passed, 3 failed\n");
+    assert_has(output, "\n8 passed, 3 failed\n");
     assert_int_equal(sh("grep -c '\"verdict\": \"fail\"' $T/v.json"), 0);
     assert_string_equal(output, "3\n");
 }
@@ -315,9 +317,9 @@ static void a_report_is_whole_or_not_there(void **state)
         sh("bsdf-validate diffuse --samples 1e3 >/dev/full 2>/dev/null"), 2);
 }
 
-/* The README's tour and what follows on a BSDF of one's own: the commands of
- * the sh blocks run in a folder that has build/bin and bsdf/ alone, and each
- * line of the text blocks is a line they printed. */
+/* The README's tour, and what follows on a BSDF of one's own and on reports: the
+ * commands of the sh blocks run in a folder that has build/bin and bsdf/ alone,
+ * and each line of the text blocks is a line they printed. */
 static void the_readmes_tour_runs(void **state)
 {
     (void)state;
@@ -334,7 +336,8 @@ static void the_readmes_tour_runs(void **state)
     FILE *into = NULL;
     while (fgets(line, sizeof line, readme)) {
         if (strncmp(line, "## ", 3) == 0)
-            tour = strstr(line, "tour") || strstr(line, "Your own BSDF");
+            tour = strstr(line, "tour") || strstr(line, "Your own BSDF") ||
+                   strstr(line, "Reports");
         if (strncmp(line, "```", 3) == 0) {
             into = !tour || into                    ? NULL
                    : strcmp(line, "```sh\n") == 0   ? script

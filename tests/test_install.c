@@ -80,6 +80,8 @@ static void install_fills_a_prefix(void **state)
     prints("cd $T/usr && ls lib lib/pkgconfig",
            "lib:\nlibbsdf.a\npkgconfig\n\nlib/pkgconfig:\nlibbsdf.pc\n");
     does("diff -r data $T/usr/share/bsdf/data");
+    does("cmp validate/report.schema.json "
+         "$T/usr/share/bsdf/report.schema.json");
 }
 
 static void relative_prefixes_are_refused(void **state)

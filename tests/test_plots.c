@@ -12,9 +12,9 @@
 
 #include "bsdf/bsdf.h"
 #include "bsdf/ior.h"
+#include "bsdf/utf8.h"
 #include "plots/axis.h"
 #include "plots/gnuplot.h"
-#include "plots/table.h"
 #include "tests/close.h"
 
 enum { OUTPUT_MAX = 1 << 16, COLUMNS_MAX = 16 };
@@ -327,7 +327,7 @@ static void wrong_requests_are_refused(void **state)
     refused("bsdf-plot lobes diffuse --wo 1,0", "\"lobes\"",
             "did you mean \"lobe\"?");
     refused("bsdf-plot none diffuse --wo 1,0", "\"none\"",
-            "lobe, lobe3d, histogram, ior");
+            "lobe, lobe3d, histogram, ior, report");
     refused("bsdf-plot", "kind", "SPEC");
     refused("bsdf-plot lobe", "lobe", "SPEC");
     refused("bsdf-plot lobe diffuse", "--wo", "degrees");
@@ -692,7 +692,7 @@ static void plain_text_is_one_line_of_utf8(void **state)
         { "\xc2\x85\xe2\x80\xa8", "\\xc2\\x85\\xe2\\x80\\xa8" }, /* new lines */
     };
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
-        char *plain = table_plain(pairs[i][0]);
+        char *plain = utf8_plain(pairs[i][0]);
         assert_non_null(plain);
         assert_string_equal(plain, pairs[i][1]);
         free(plain);

@@ -74,3 +74,14 @@ struct bsdf *foreign_new(const char *spec, const struct bands *bands,
             spec);
     return NULL;
 }
+
+struct bsdf *foreign_recorded(const char *spec, const struct bands *bands,
+                              bool programs, struct err *err)
+{
+    const bool library = strncmp(spec, pipe_prefix, sizeof pipe_prefix - 1) &&
+                         object_length(spec) == 0;
+    if (library || programs)
+        return foreign_new(spec, bands, err);
+    err_set(err, "spec \"%.200s\" starts a program: expected --programs", spec);
+    return NULL;
+}

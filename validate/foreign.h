@@ -16,4 +16,9 @@
 struct bsdf *foreign_new(const char *spec, const struct bands *bands,
                          struct err *err);
 
+/** The same for a spec that a file brought: one that would start a program is
+ * refused unless programs are allowed. */
+struct bsdf *foreign_recorded(const char *spec, const struct bands *bands,
+                              bool programs, struct err *err);
+
 #endif

@@ -9,12 +9,17 @@
 #include "bsdf/cli.h"
 #include "validate/foreign.h"
 #include "validate/pipe.h"
+#include "validate/replay.h"
 #include "validate/report.h"
 #include "validate/run.h"
 
 enum {
     OPT_ALL = 1,
     OPT_JSON,
+    OPT_JUNIT,
+    OPT_REPLAY,
+    OPT_PROGRAMS,
+    OPT_SPEC,
     OPT_SEED,
     OPT_SAMPLES,
     OPT_SIGNIFICANCE,
@@ -40,7 +45,10 @@ struct request {
     size_t wos;
     const char *spec[SPECS_MAX];
     size_t specs;
-    const char *json;
+    const char *json, *junit;
+    const char *replay, *replay_spec;
+    bool programs;
+    const char *own; /* an option that a report answers instead */
     bool all, verbose;
 };
 
@@ -93,10 +101,37 @@ static const struct argp_option options[] = {
       "(or BSDF_IOR_PATH)",
       0 },
     { "json", OPT_JSON, "FILE", 0, "write the whole run there as well", 0 },
+    { "junit", OPT_JUNIT, "FILE", 0,
+      "write it as JUnit's XML, for continuous integration", 0 },
+    { "programs", OPT_PROGRAMS, 0, 0,
+      "a report that is replayed may start the programs and plugins that its "
+      "specs name",
+      0 },
+    { "replay", OPT_REPLAY, "FILE", 0,
+      "run a report (--json) again as it says, show what fails, and say "
+      "whether "
+      "every verdict is the same; 2 if one is not",
+      0 },
+    { "spec", OPT_SPEC, "SPEC", 0,
+      "of a report that is replayed, compare and show this model alone; or its "
+      "number, from 1",
+      0 },
     { "verbose", 'v', 0, 0, "every direction, not just the worst", 0 },
     { "list", OPT_LIST, 0, 0, "name the checks and stop", 0 },
     { 0 },
 };
+
+/* Whether an option is one that a report answers. */
+static bool of_the_report(int key)
+{
+    static const int keys[] = { OPT_SEED, OPT_SAMPLES,     OPT_SIGNIFICANCE,
+                                OPT_WO,   OPT_ESCALATIONS, OPT_SKIP,
+                                OPT_NM,   OPT_RGB };
+    bool found = false;
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+        found |= keys[i] == key;
+    return found;
+}
 
 static bool skip(struct plan *plan, const char *name, struct err *err)
 {
@@ -111,6 +146,23 @@ static bool skip(struct plan *plan, const char *name, struct err *err)
     return err_unknown(err, "check", name, names);
 }
 
+/* A report says by itself what to run. */
+static bool request_check(const struct request *r, struct err *err)
+{
+    if (r->replay && r->specs > 0)
+        return err_set(err,
+                       "--replay: expected no SPEC and no --all; the report "
+                       "has them");
+    if (r->replay && r->own)
+        return err_set(err, "--replay: --%s is what the report says", r->own);
+    if (r->replay_spec && !r->replay)
+        return err_set(err, "--spec: expected --replay FILE with it");
+    if (!r->replay && r->specs == 0)
+        return err_set(err, "expected a SPEC, as in roughconductor:"
+                            "material=Ca,alpha=0.25, or --all");
+    return true;
+}
+
 static error_t option(int key, char *arg, struct argp_state *state)
 {
     struct request *r = state->input;
@@ -118,6 +170,9 @@ static error_t option(int key, char *arg, struct argp_state *state)
     uint64_t n;
     double seconds;
     bool ok = true;
+    for (int i = 0; key > 0 && options[i].name; i++)
+        if (options[i].key == key && of_the_report(key))
+            r->own = options[i].name;
     switch (key) {
     case OPT_ALL:
         r->all = true;
@@ -170,6 +225,18 @@ static error_t option(int key, char *arg, struct argp_state *state)
     case OPT_JSON:
         r->json = arg;
         break;
+    case OPT_JUNIT:
+        r->junit = arg;
+        break;
+    case OPT_PROGRAMS:
+        r->programs = true;
+        break;
+    case OPT_REPLAY:
+        r->replay = arg;
+        break;
+    case OPT_SPEC:
+        r->replay_spec = arg;
+        break;
     case 'v':
         r->verbose = true;
         break;
@@ -184,9 +251,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
             r->spec[r->specs++] = arg;
         break;
     case ARGP_KEY_END:
-        if (r->specs == 0)
-            ok = err_set(&err, "expected a SPEC, as in roughconductor:"
-                               "material=Ca,alpha=0.25, or --all");
+        ok = request_check(r, &err);
         break;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -216,50 +281,94 @@ static void progress(void *context, size_t done, size_t of)
     fflush(stderr);
 }
 
+/* The files first, as a reader of the text may hang up. */
+static bool files_write(const struct request *r, const struct run *run,
+                        int words, char *const *word, struct err *err)
+{
+    return (!r->json || report_json(r->json, run, words, word, err)) &&
+           (!r->junit || report_junit(r->junit, run, err));
+}
+
+/* Runs the checks, and says what they found; the exit status. */
+static int validate(struct request *r, int words, char *const *word,
+                    struct err *err)
+{
+    static struct bsdf *bsdf[SPECS_MAX];
+    struct run run;
+    int status = EXIT_REQUEST;
+    if (r->plan.samples == 0) /* not asked for */
+        r->plan.samples = r->all ? all_samples : plan_default.samples;
+    for (size_t i = 0; i < r->specs; i++) {
+        bsdf[i] = foreign_new(r->spec[i], &r->bands, err);
+        if (!bsdf[i])
+            goto done;
+        if (err->text[0])
+            fprintf(stderr, "bsdf-validate: warning: %s\n", err->text);
+    }
+    if (run_checks(&run, &r->plan, (const struct bsdf *const *)bsdf, r->specs,
+                   r->wo, r->wos, isatty(2) ? progress : NULL, NULL, err)) {
+        if (files_write(r, &run, words, word, err))
+            status = run.failed ? EXIT_UNSOUND : EXIT_SOUND;
+        report_text(stdout, &run, r->verbose);
+        run_clear(&run);
+    }
+done:
+    for (size_t i = 0; i < r->specs; i++)
+        bsdf_free(bsdf[i]);
+    return status;
+}
+
+/* Runs a report again; the exit status. */
+static int replay(const struct request *r, int words, char *const *word,
+                  struct err *err)
+{
+    struct replay again;
+    int status = EXIT_REQUEST;
+    if (!replay_run(&again, r->replay, r->replay_spec, r->plan.threads,
+                    r->programs, isatty(2) ? progress : NULL, NULL, err))
+        return EXIT_REQUEST;
+    const bool written = files_write(r, &again.run, words, word, err);
+    report_text(stdout, &again.shown, r->verbose);
+    if (again.same)
+        printf("replayed: the same %zu verdicts in every field\n",
+               again.compared);
+    else
+        printf("replayed: not the same\n");
+    if (written && !again.same)
+        err_set(err, "%s (made by version %s, this is " BSDF_VERSION "): %s",
+                r->replay, again.recorded.version, again.differs.text);
+    else if (written)
+        status = again.shown.failed ? EXIT_UNSOUND : EXIT_SOUND;
+    replay_clear(&again);
+    return status;
+}
+
 int main(int argc, char **argv)
 {
     static struct request r;
-    static struct bsdf *bsdf[SPECS_MAX];
     struct err err;
-    struct run run;
-    int status = EXIT_REQUEST;
+    /* Parsing puts the options first. */
+    char **word = malloc((size_t)argc * sizeof *word);
+    if (!word)
+        return EXIT_REQUEST;
+    memcpy(word, argv, (size_t)argc * sizeof *word);
     r.plan = plan_default;
     r.plan.samples = 0;
     r.bands = bands_default;
     gsl_set_error_handler_off();
     (void)elapsed();
     argp_err_exit_status = EXIT_REQUEST;
-    argp_parse(&(struct argp){ options, option, "SPEC...", about, 0, 0, 0 },
+    argp_parse(&(struct argp){ options, option, "SPEC...\n--replay FILE", about,
+                               0, 0, 0 },
                argc, argv, 0, NULL, &r);
-    if (r.plan.samples == 0) /* not asked for */
-        r.plan.samples = r.all ? all_samples : plan_default.samples;
-    for (size_t i = 0; i < r.specs; i++) {
-        bsdf[i] = foreign_new(r.spec[i], &r.bands, &err);
-        if (!bsdf[i])
-            goto fail;
-        if (err.text[0])
-            fprintf(stderr, "bsdf-validate: warning: %s\n", err.text);
-    }
-    if (!run_checks(&run, &r.plan, (const struct bsdf *const *)bsdf, r.specs,
-                    r.wo, r.wos, isatty(2) ? progress : NULL, NULL, &err))
-        goto fail;
-    status = run.failed ? EXIT_UNSOUND : EXIT_SOUND;
-    /* First, as a reader of the text may hang up. */
-    if (r.json && !report_json(r.json, &run, &err)) {
+    int status = r.replay ? replay(&r, argc, word, &err)
+                          : validate(&r, argc, word, &err);
+    if (status == EXIT_REQUEST)
         fprintf(stderr, "bsdf-validate: %s\n", err.text);
-        status = EXIT_REQUEST;
-    }
-    report_text(stdout, &run, r.verbose);
-    run_clear(&run);
-    goto done;
-fail:
-    fprintf(stderr, "bsdf-validate: %s\n", err.text);
-done:
-    for (size_t i = 0; i < r.specs; i++)
-        bsdf_free(bsdf[i]);
     if (fflush(stdout) != 0 || ferror(stdout)) {
         fprintf(stderr, "bsdf-validate: standard output: write error\n");
         status = EXIT_REQUEST;
     }
+    free(word);
     return status;
 }

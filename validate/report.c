@@ -1,17 +1,11 @@
-/* report.c - what a run found */
+/* report.c - what a run found, as a table for people */
 #include "validate/report.h"
 
-#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "bsdf/cli.h"
-#include "bsdf/outfile.h"
-
-/* Failures before passes, then the least room below the limit; a check without
- * a word on one direction may have one on another. */
-static bool worse(const struct verdict *a, const struct verdict *b)
+bool report_worse(const struct verdict *a, const struct verdict *b)
 {
     if (!a->applies || !b->applies)
         return a->applies;
@@ -121,8 +115,8 @@ void report_text(FILE *out, const struct run *run, bool verbose)
             for (size_t i = first; i < last; i++) {
                 if (verbose)
                     row(out, &run->result[i].verdict[c], true);
-                if (worse(&run->result[i].verdict[c],
-                          &run->result[worst].verdict[c]))
+                if (report_worse(&run->result[i].verdict[c],
+                                 &run->result[worst].verdict[c]))
                     worst = i;
             }
             if (!verbose)
@@ -132,96 +126,4 @@ void report_text(FILE *out, const struct run *run, bool verbose)
         first = last;
     }
     fprintf(out, "\n%zu passed, %zu failed\n", run->passed, run->failed);
-}
-
-static json_t *number(double x)
-{
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
-static json_t *direction(struct vec3 w)
-{
-    const struct angles a = dir_to_degrees(w);
-    return json_pack("{s:f, s:f, s:[f, f, f]}", "theta_deg", a.theta_deg,
-                     "phi_deg", a.phi_deg, "xyz", w.x, w.y, w.z);
-}
-
-/* A spec may hold bytes that are no UTF-8; they become question marks. */
-static json_t *text(const char *bytes)
-{
-    json_t *s = json_string(bytes);
-    if (s)
-        return s;
-    char *copy = strdup(bytes);
-    for (char *p = copy; p && *p; p++)
-        if ((unsigned char)*p >= 0x80)
-            *p = '?';
-    s = copy ? json_string(copy) : NULL;
-    free(copy);
-    return s;
-}
-
-static json_t *verdict_json(const struct verdict *v)
-{
-    if (!v->applies)
-        return json_pack("{s:s, s:s, s:o}", "check", v->check, "verdict",
-                         "not applicable", "note", text(v->note));
-    json_t *o = json_pack(
-        "{s:s, s:s, s:o, s:o, s:o, s:s, s:o, s:o, s:o}", "check", v->check,
-        "verdict", v->passed ? "pass" : "fail", "value", number(v->value),
-        "limit", number(v->limit), "error", number(v->error), "unit", v->unit,
-        "p", number(v->p), "wo", direction(v->wo), "note", text(v->note));
-    if (o && v->has_wi && isfinite(v->wi.x + v->wi.y + v->wi.z))
-        json_object_set_new(o, "wi", direction(v->wi));
-    return o;
-}
-
-static json_t *run_json(const struct run *run)
-{
-    json_t *results = json_array();
-    for (size_t i = 0; i < run->results; i++) {
-        const struct result *r = &run->result[i];
-        json_t *verdicts = json_array();
-        for (int c = 0; c < checks_count(); c++)
-            json_array_append_new(verdicts, verdict_json(&r->verdict[c]));
-        json_array_append_new(results, json_pack("{s:o, s:o, s:o}", "spec",
-                                                 text(bsdf_spec(r->bsdf)), "wo",
-                                                 direction(r->wo), "verdicts",
-                                                 verdicts));
-    }
-    json_t *bands = json_array();
-    char name[32];
-    for (int b = 0;
-         run->results > 0 && b < bsdf_bands(run->result[0].bsdf)->count; b++) {
-        bands_print_one(bsdf_bands(run->result[0].bsdf), b, name, sizeof name);
-        json_array_append_new(bands, json_string(name));
-    }
-    return json_pack("{s:s, s:s, s:I, s:I, s:f, s:o, s:I, s:I, s:o}", "program",
-                     "bsdf-validate", "version", BSDF_VERSION, "seed",
-                     (json_int_t)run->plan.seed, "samples",
-                     (json_int_t)run->plan.samples, "significance",
-                     run->plan.significance, "bands", bands, "passed",
-                     (json_int_t)run->passed, "failed", (json_int_t)run->failed,
-                     "results", results);
-}
-
-bool report_json(const char *path, const struct run *run, struct err *err)
-{
-    struct outfile out;
-    json_t *root = run_json(run);
-    if (!root)
-        return err_set(err, "%s: the report could not be made", path);
-    bool ok = outfile_open(&out, path, err);
-    if (ok) {
-        const bool dumped = json_dumpf(root, out.stream, JSON_INDENT(1)) == 0 &&
-                            fputc('\n', out.stream) != EOF;
-        if (dumped)
-            ok = outfile_close(&out, err);
-        else {
-            ok = err_set(err, "%s: cannot be written", path);
-            outfile_abandon(&out);
-        }
-    }
-    json_decref(root);
-    return ok;
 }

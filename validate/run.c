@@ -159,7 +159,9 @@ static bool run_stages(struct run *run, run_progress *progress, void *context,
                         .context = context,
                         .ok = true,
                         .err = err };
-    bool ok = l.marked || err_set(err, "out of memory");
+    bool ok = l.marked;
+    if (!ok)
+        err_set(err, "out of memory");
     double left = run->plan.significance;
     for (l.stage = 0; ok && l.stage <= run->plan.escalations; l.stage++) {
         size_t marked = 0;
@@ -232,26 +234,19 @@ static void effects(struct run *run)
     }
 }
 
-bool run_checks(struct run *run, const struct plan *plan,
-                const struct bsdf *const *bsdf, size_t bsdfs,
-                const struct vec3 *wo, size_t wos, run_progress *progress,
-                void *context, struct err *err)
+bool run_pairs(struct run *run, const struct plan *plan,
+               const struct run_pair *pair, size_t pairs,
+               run_progress *progress, void *context, struct err *err)
 {
-    const size_t c = (size_t)checks_count();
     *run = (struct run){ .plan = *plan };
-    run->result = calloc(bsdfs * (wos ? wos : RUN_DIRECTIONS_MAX) + 1,
-                         sizeof *run->result);
+    run->result = calloc(pairs + 1, sizeof *run->result);
     bool ok = run->result;
-    for (size_t i = 0; ok && i < bsdfs; i++) {
-        struct vec3 own[RUN_DIRECTIONS_MAX];
-        const size_t n = wos ? wos : run_directions(bsdf[i], own);
-        for (size_t k = 0; ok && k < n; k++) {
-            struct result *r = &run->result[run->results++];
-            r->bsdf = bsdf[i];
-            r->wo = wos ? wo[k] : own[k];
-            r->verdict = calloc(c, sizeof *r->verdict);
-            ok = r->verdict;
-        }
+    for (size_t i = 0; ok && i < pairs; i++) {
+        struct result *r = &run->result[run->results++];
+        r->bsdf = pair[i].bsdf;
+        r->wo = pair[i].wo;
+        r->verdict = calloc((size_t)checks_count(), sizeof *r->verdict);
+        ok = r->verdict;
     }
     if (!ok)
         err_set(err, "out of memory");
@@ -263,6 +258,28 @@ bool run_checks(struct run *run, const struct plan *plan,
     count(run);
     effects(run);
     return true;
+}
+
+bool run_checks(struct run *run, const struct plan *plan,
+                const struct bsdf *const *bsdf, size_t bsdfs,
+                const struct vec3 *wo, size_t wos, run_progress *progress,
+                void *context, struct err *err)
+{
+    struct run_pair *pair =
+        calloc(bsdfs * (wos ? wos : RUN_DIRECTIONS_MAX) + 1, sizeof *pair);
+    size_t pairs = 0;
+    *run = (struct run){ .result = NULL };
+    if (!pair)
+        return err_set(err, "out of memory");
+    for (size_t i = 0; i < bsdfs; i++) {
+        struct vec3 own[RUN_DIRECTIONS_MAX];
+        const size_t n = wos ? wos : run_directions(bsdf[i], own);
+        for (size_t k = 0; k < n; k++)
+            pair[pairs++] = (struct run_pair){ bsdf[i], wos ? wo[k] : own[k] };
+    }
+    const bool ok = run_pairs(run, plan, pair, pairs, progress, context, err);
+    free(pair);
+    return ok;
 }
 
 void run_clear(struct run *run)

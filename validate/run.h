@@ -47,6 +47,15 @@ bool run_checks(struct run *run, const struct plan *plan,
                 const struct bsdf *const *bsdf, size_t bsdfs,
                 const struct vec3 *wo, size_t wos, run_progress *progress,
                 void *context, struct err *err);
+
+/** The same of a list of pairs; those of one bsdf follow one another. */
+struct run_pair {
+    const struct bsdf *bsdf;
+    struct vec3 wo;
+};
+bool run_pairs(struct run *run, const struct plan *plan,
+               const struct run_pair *pair, size_t pairs,
+               run_progress *progress, void *context, struct err *err);
 void run_clear(struct run *run);
 
 /** Decides n statistical verdicts: passed, value and limit in sigma. */
