@@ -218,7 +218,7 @@ static void a_plugin_is_judged_as_the_model_it_is(void **state)
          "roughconductor:alpha=0.3,distribution=ggx; do "
          "bsdf-validate $s --samples 1e4 --wo 40,10 -v >$T/out || exit 1; "
          "sed -n '/^  check/,/^$/p' $T/out | "
-         "awk '!/furnace|answers/ {print $1, $2, /pass/}' >$T/rows; "
+         "awk '/pass/ && !/furnace|answers/ {print $1, $2}' >$T/rows; "
          "[ ! -e $T/first ] && mv $T/rows $T/first; done; "
          "cmp $T/first $T/rows && grep -c chi2 $T/rows",
          0);
@@ -232,7 +232,7 @@ static void text_from_awk_is_sound(void **state)
     does("bsdf-validate \"pipe:$AWK -f $T/diffuse.awk\" --samples 1000 "
          "--wo 40,10",
          0);
-    assert_has(output, "8 passed, 0 failed");
+    assert_has(output, "passed, 0 failed");
     nothing_is_left();
 }
 

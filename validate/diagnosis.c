@@ -16,9 +16,11 @@
 /* A mistake is named where it explains at least so much. */
 static const double enough = 0.8;
 
-/* The best so far, and how it would be put. */
+/* The best so far, and how it would be put.  What cannot be measured as a share
+ * of a sum of squares has a rank instead, which is not shown. */
 struct guess {
     double explained;
+    bool measured;
     char text[200];
 };
 
@@ -29,6 +31,20 @@ suggest(struct guess *g, double explained, const char *format, ...)
     if (!(explained > g->explained))
         return;
     g->explained = explained;
+    g->measured = true;
+    va_start(args, format);
+    vsnprintf(g->text, sizeof g->text, format, args);
+    va_end(args);
+}
+
+__attribute__((format(printf, 3, 4))) static void
+suggest_rank(struct guess *g, double rank, const char *format, ...)
+{
+    va_list args;
+    if (!(rank > g->explained))
+        return;
+    g->explained = rank;
+    g->measured = false;
     va_start(args, format);
     vsnprintf(g->text, sizeof g->text, format, args);
     va_end(args);
@@ -150,8 +166,8 @@ static void suggest_missing_shares(struct guess *g, const struct clues *clues,
     const bool lacks = low > 1 - 1e-6 && high <= 1.01 / least;
     const bool other = high < 1 + 1e-6 && low >= 0.99 * least;
     if (lacks || other)
-        suggest(g, 0.99, "missing lobe probability in %s",
-                lacks ? what : "what it is compared with (eval)");
+        suggest_rank(g, 0.99, "missing lobe probability in %s",
+                     lacks ? what : "what it is compared with (eval)");
 }
 
 static void diagnose_sample(struct guess *g, const struct subject *s,
@@ -275,17 +291,19 @@ static void suggest_below(struct guess *g, const struct subject *s)
         if (patch_centre(partition_patch(v->partition, i)).z * s->wo.z < 0)
             below = estimate_add(below, v->mass[i]);
     if (below.value > below.error + 1e-9)
-        suggest(g, 1, "mass below the horizon: %.3g of the pdf's", below.value);
+        suggest_rank(g, 1, "mass below the horizon: %.3g of the pdf's",
+                     below.value);
 }
 
 static void suggest_whole_lobes(struct guess *g, const struct subject *s)
 {
     const double total = s->survey.total.value;
     if (total > 1.5 && fabs(total - round(total)) < 1e-4)
-        suggest(g, 0.99,
-                "missing lobe probability: the pdf integrates to %.0f, as many "
-                "as it has lobes",
-                total);
+        suggest_rank(
+            g, 0.99,
+            "missing lobe probability: the pdf integrates to %.0f, as many "
+            "as it has lobes",
+            total);
 }
 
 static void suggest_refused(struct guess *g, const struct subject *s)
@@ -294,10 +312,11 @@ static void suggest_refused(struct guess *g, const struct subject *s)
     const double refused = (double)v->refused / (double)v->samples;
     const double excess = refused - survey_refusal(v).value;
     if (excess > 1e-5 && fabs(v->total.value - 1) < 1e-4)
-        suggest(g, 0.9,
-                "%.3g of the samples are refused, and the pdf integrates to 1 "
-                "as if none were",
-                excess);
+        suggest_rank(
+            g, 0.9,
+            "%.3g of the samples are refused, and the pdf integrates to 1 "
+            "as if none were",
+            excess);
 }
 
 static bool deviates(const struct clues *clues, double limit)
@@ -542,12 +561,12 @@ static void diagnose_facets(struct guess *g, const struct subject *s,
         }
     /* Right, but for a constant. */
     if (right.off < 0.01 && right.most > 1 + 1e-6)
-        suggest(g, 0.99,
-                "f has the factor %s too many, or lacks what is below "
-                "its fraction bar",
-                right.most > 3.2   ? "4"
-                : right.most > 2.2 ? "pi"
-                                   : "2");
+        suggest_rank(g, 0.99,
+                     "f has the factor %s too many, or lacks what is below "
+                     "its fraction bar",
+                     right.most > 3.2   ? "4"
+                     : right.most > 2.2 ? "pi"
+                                        : "2");
     for (int k = 0; k < MASKINGS; k++)
         for (int turn = 0; turn < 2; turn++)
             if (maskings[k].text && f[k][turn].most <= 1 + 1e-4 &&
@@ -569,17 +588,17 @@ static void diagnose_constant(struct guess *g, const struct subject *s)
         return;
     const unsigned matt = BSDF_DIFFUSE_REFLECTION | BSDF_DIFFUSE_TRANSMISSION;
     const bool pi = !(s->claims.lobes & ~matt) && most <= PI * (1 + 1e-6);
-    suggest(g, 0.85,
-            "f lacks a division by a constant: the factor %s too many "
-            "would give an albedo of %.3g",
-            pi          ? "pi"
-            : most <= 2 ? "2"
-            : most <= 4 ? "4"
-                        : "4 pi",
-            most / (pi          ? PI
-                    : most <= 2 ? 2
-                    : most <= 4 ? 4
-                                : 4 * PI));
+    suggest_rank(g, 0.85,
+                 "f lacks a division by a constant: the factor %s too many "
+                 "would give an albedo of %.3g",
+                 pi          ? "pi"
+                 : most <= 2 ? "2"
+                 : most <= 4 ? "4"
+                             : "4 pi",
+                 most / (pi          ? PI
+                         : most <= 2 ? 2
+                         : most <= 4 ? 4
+                                     : 4 * PI));
 }
 
 static const char *constant_name(double x)
@@ -598,10 +617,11 @@ static void diagnose_furnace(struct guess *g, const struct subject *s)
     const struct furnace f = furnace(s);
     const double area = f.area.value, seen = f.seen.value / area;
     if (fabs(area - 1) > 1e-6)
-        suggest(g, 0.99, "D %s the factor %s: its furnace gives %.4g",
-                area > 1 ? "has" : "lacks",
-                constant_name(area) ? constant_name(area) : "that makes it 1",
-                area);
+        suggest_rank(g, 0.99, "D %s the factor %s: its furnace gives %.4g",
+                     area > 1 ? "has" : "lacks",
+                     constant_name(area) ? constant_name(area)
+                                         : "that makes it 1",
+                     area);
     if (!(fabs(seen - 1) > 1e-6) || !facets_fit_shown(s, &fit))
         return;
     /* What G1 is, against what it may have become. */
@@ -609,15 +629,16 @@ static void diagnose_furnace(struct guess *g, const struct subject *s)
     const double g1 = 1 / (1 + fitted_lambda(&fit, s->wo));
     const double course = 1 / (1 + course_lambda(&fit, s->wo));
     if (near(shown, course))
-        suggest(g, 1,
-                "masking with pi for sqrt(pi) in Lambda: G1 is %.4g for "
-                "%.4g",
-                shown, g1);
+        suggest_rank(g, 1,
+                     "masking with pi for sqrt(pi) in Lambda: G1 is %.4g for "
+                     "%.4g",
+                     shown, g1);
     if (near(shown, 1))
-        suggest(g, 0.99, "missing masking: G1 is 1 for %.4g", g1);
+        suggest_rank(g, 0.99, "missing masking: G1 is 1 for %.4g", g1);
     if (near(shown, g1 * g1))
-        suggest(g, 0.99, "doubled masking: G1 is %.4g for %.4g", shown, g1);
-    suggest(g, 0.9, "G1 is %.4g times what D asks for", seen);
+        suggest_rank(g, 0.99, "doubled masking: G1 is %.4g for %.4g", shown,
+                     g1);
+    suggest_rank(g, 0.9, "G1 is %.4g times what D asks for", seen);
 }
 
 /* -- deltas ---------------------------------------------------------------- */
@@ -630,11 +651,12 @@ static void diagnose_delta(struct guess *g, const struct subject *s)
         const double drawn = (double)d->count / (double)v->samples;
         const bool through = d->wi.z * s->wo.z < 0;
         if (d->pdf > 0 && fabs(drawn / d->pdf - 1) > 0.001)
-            suggest(g, 0.9,
-                    "the %s direction is drawn %.4g of the time and says %.4g, "
-                    "%.4g times that",
-                    through ? "refracted" : "reflected", drawn, d->pdf,
-                    d->pdf / drawn);
+            suggest_rank(
+                g, 0.9,
+                "the %s direction is drawn %.4g of the time and says %.4g, "
+                "%.4g times that",
+                through ? "refracted" : "reflected", drawn, d->pdf,
+                d->pdf / drawn);
     }
 }
 
@@ -650,21 +672,25 @@ static void diagnose_delta_reciprocity(struct guess *g, const struct verdict *v,
     const double log_n2 = fabs(log(n2));
     for (int power = 1; power <= 3; power++)
         if (near(log(ratio), power * log_n2))
-            suggest(g, 0.99,
-                    "the weight of transmission is off by the factor eta^2%s",
-                    power == 1   ? ""
-                    : power == 2 ? " on either way"
-                                 : ", and more");
+            suggest_rank(
+                g, 0.99,
+                "the weight of transmission is off by the factor eta^2%s",
+                power == 1   ? ""
+                : power == 2 ? " on either way"
+                             : ", and more");
 }
 
 /* -- all of it ------------------------------------------------------------- */
 
 static void put(struct verdict *v, const struct guess *g)
 {
-    if (g->explained >= enough)
+    if (g->explained >= enough && g->measured)
         snprintf(v->diagnosis, sizeof v->diagnosis,
                  "%s (explains %.4g %% of the deviation)", g->text,
                  100 * fmin(g->explained, 1));
+    else if (g->explained >= enough)
+        snprintf(v->diagnosis, sizeof v->diagnosis, "%s (fits what was seen)",
+                 g->text);
     else
         snprintf(v->diagnosis, sizeof v->diagnosis,
                  "none of the known mistakes explains it%s%s",
@@ -709,7 +735,7 @@ void diagnose(const struct subject *s, struct verdict *verdict)
     if (failed(verdict, "support"))
         suggest_below(&density, s);
     if (failed(verdict, "support") && density.explained < enough)
-        suggest(&density, 0.9, "mass below the horizon, of f");
+        suggest_rank(&density, 0.9, "mass below the horizon, of f");
     if (failed(verdict, "energy") && facets.explained < enough) {
         diagnose_facets(&f, s, clues);
         if (f.explained < enough)
