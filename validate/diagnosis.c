@@ -107,15 +107,18 @@ static void suggest_factors(struct guess *g, const struct clues *clues,
 {
     const enum clue_scope scope = scope_of(clues);
     for (const struct factor *f = factors; f->name; f++) {
-        const bool probability = strcmp(f->name, "lobe probability") == 0;
+        const bool share = strcmp(f->name, "lobe probability") == 0;
+        const bool masks = strncmp(f->name, "G1", 2) == 0;
         suggest(g, try_factor(clues, scope, f, 1, false),
-                probability ? "%s has the %s too many%s"
-                            : "%s has the factor %s too many%s",
-                what, f->name, scope_text[scope]);
+                "%s%s has the %s%s too many%s",
+                masks ? "doubled masking: " : "", what, share ? "" : "factor ",
+                f->name, scope_text[scope]);
         suggest(g, try_factor(clues, scope, f, -1, false),
-                probability ? "missing %.0s%s in %s%s"
-                            : "%s lacks the factor %s%.0s%s",
-                what, f->name, what, scope_text[scope]);
+                "%s%s lacks the %s%s%s",
+                masks   ? "missing masking: "
+                : share ? "missing lobe probability: "
+                        : "",
+                what, share ? "" : "factor ", f->name, scope_text[scope]);
     }
     suggest_constant(g, clues, scope, what);
 }
@@ -295,14 +298,24 @@ static void suggest_below(struct guess *g, const struct subject *s)
                      below.value);
 }
 
-static void suggest_whole_lobes(struct guess *g, const struct subject *s)
+/* Where the pdf of overlapping lobes is too large as a whole, but by no more
+ * than what their probabilities divide by. */
+static void suggest_whole_lobes(struct guess *g, const struct subject *s,
+                                struct clues *clues)
 {
     const double total = s->survey.total.value;
-    if (total > 1.5 && fabs(total - round(total)) < 1e-4)
+    double least = INFINITY;
+    if (!(total > 1.01) ||
+        !clues_gather(s, CLUES_SAMPLE_PDF, NULL, NULL, clues))
+        return;
+    for (size_t i = 0; i < clues->n; i++)
+        if (clues->clue[i].overlap && clues->clue[i].share > 0)
+            least = fmin(least, clues->clue[i].share);
+    if (total <= 1.01 / least)
         suggest_rank(
-            g, 0.99,
-            "missing lobe probability: the pdf integrates to %.0f, as many "
-            "as it has lobes",
+            g, 0.81,
+            "missing lobe probability: the pdf integrates to %.4g, and "
+            "its lobes overlap",
             total);
 }
 
@@ -331,7 +344,7 @@ static void diagnose_density(struct guess *g, const struct subject *s,
                              struct clues *clues)
 {
     suggest_below(g, s);
-    suggest_whole_lobes(g, s);
+    suggest_whole_lobes(g, s, clues);
     if (!clues_gather(s, CLUES_DENSITY, NULL, NULL, clues))
         return;
     const bool exact = clues->n >= 32;
@@ -373,10 +386,14 @@ static void diagnose_reciprocity(struct guess *g, const struct subject *s,
     } mistake[] = {
         { 3, 1, "f has the factor cos_i too many, or lacks cos_o" },
         { 3, -1, "f lacks the factor cos_i, or has cos_o too many" },
-        { 8, 0.5, "f lacks the factor eta^2 of radiance" },
-        { 8, -0.5, "f has the factor eta^2 twice" },
-        { 8, 1, "swapped directions: f(wo, wi) is that of wi given" },
-        { 8, -1, "f has the factor eta^2 three times" },
+        { 8, 0.5, "f has the factor eta too many" },
+        { 8, -0.5, "f lacks the factor eta" },
+        { 8, 1,
+          "f has the factor eta^2 too many, as without the compression of "
+          "radiance, or swapped directions: it is that of wi given" },
+        { 8, -1,
+          "f lacks the factor eta^2, as with the compression of radiance "
+          "twice" },
         { 10, 2, "doubled masking of wo: G1(wo) G1(wo) for G1(wo) G1(wi)" },
         { 11, 2, "doubled masking of wi: G1(wi) G1(wi) for G1(wo) G1(wi)" },
         { 10, 1, "missing masking G1(wi)" },
@@ -736,11 +753,8 @@ void diagnose(const struct subject *s, struct verdict *verdict)
         suggest_below(&density, s);
     if (failed(verdict, "support") && density.explained < enough)
         suggest_rank(&density, 0.9, "mass below the horizon, of f");
-    if (failed(verdict, "energy") && facets.explained < enough) {
+    if (failed(verdict, "energy") && facets.explained < enough)
         diagnose_facets(&f, s, clues);
-        if (f.explained < enough)
-            diagnose_constant(&f, s);
-    }
     put_by_name(verdict, "support", &density);
     put_by_name(verdict, "sample", &sample);
     put_by_name(verdict, "pdf", &density);
@@ -756,6 +770,12 @@ void diagnose(const struct subject *s, struct verdict *verdict)
     for (int i = 1; i < 6; i++)
         if (causes[i]->explained >= enough && best->explained < enough)
             best = causes[i];
+    struct guess constant = { 0 };
+    if (best->explained < enough) {
+        diagnose_constant(&constant, s);
+        if (constant.explained > best->explained)
+            best = &constant;
+    }
     put_by_name(verdict, "energy", best);
     put_by_name(verdict, "weights", best);
     free(clues);

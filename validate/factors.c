@@ -99,9 +99,9 @@ const struct factor factors[] = {
     { "wi.h", wi_h, wi_h },
     { "eta^2", eta2, eta2_back },
     { "lobe probability", share, not_known },
-    { "masking G1(wo)", g1_o, g1_i },
-    { "masking G1(wi)", g1_i, g1_o },
-    { "masking G1(wo) G1(wi)", g1_both, one },
+    { "G1(wo)", g1_o, g1_i },
+    { "G1(wi)", g1_i, g1_o },
+    { "G1(wo) G1(wi)", g1_both, one },
     { 0 },
 };
 
