@@ -346,6 +346,8 @@ static void a_students_metal_is_caught(void **state)
          "--wo 85,0",
          1);
     assert_has(output, "1.32784/1.14691/0.644822"); /* as by quadrature */
+    assert_has(output, "masking with pi for sqrt(pi)");
+    assert_has(output, "Fresnel at the wrong angle");
     does("bsdf-validate ./student.so --samples 1000 --wo 85,0 | grep FAIL | "
          "cut -c 3-14",
          0);
