@@ -221,7 +221,7 @@ def lost_sine(bsdf, variant, verdict):
     if verdict["check"] not in ("sample", "chi2", "jacobian"):
         return False
     sine2 = bsdf["alpha"] ** 2
-    if "wi" in verdict:
+    if verdict.get("wi"):
         m = facet(xyz(verdict["wo"]), xyz(verdict["wi"]), 1)
         sine2 = m[0] ** 2 + m[1] ** 2
     return 2.0**-24 > 1e-4 * sine2
@@ -233,7 +233,7 @@ def grazed_facet(bsdf, variant, verdict):
     eta = {"roughdielectric": 1.5046 / 1.000277, "principled": 1.5}.get(
         bsdf["type"]
     )
-    if not eta or verdict["check"] != "reciprocity" or "wi" not in verdict:
+    if not eta or verdict["check"] != "reciprocity" or not verdict.get("wi"):
         return False
     o, i = xyz(verdict["wo"]), xyz(verdict["wi"])
     if o[2] * i[2] >= 0:
@@ -467,7 +467,7 @@ def main(argv):
             )
             v = of_check[0]
             cause = cause_of(bsdf, variant, v)
-            wi = f", wi = {angles(v['wi'])}" if "wi" in v else ""
+            wi = f", wi = {angles(v['wi'])}" if v.get("wi") else ""
             print(
                 f"    {check} {number(v['value'])}, limit"
                 f" {number(v['limit'])}{' ' + v['unit'] if v['unit'] else ''},"

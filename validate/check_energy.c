@@ -20,7 +20,8 @@ static void run(const struct subject *s, struct verdict *v)
     /* A one-sided model takes all that comes from below. */
     const bool lossless =
         claims.lossless && (s->wo.z > 0 || (claims.two_sided && s->wo.z < 0));
-    const double known = fmax(error_limit, 4 * s->survey.rounding);
+    const double known =
+        fmax(error_limit, 4 * s->survey.rounding + 64 * claims.epsilon);
     const int bands = bsdf_bands(s->bsdf)->count;
     double least = INFINITY;
     v->limit = 1;
