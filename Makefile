@@ -55,7 +55,7 @@ FOLDERS  := $(patsubst %/,%,$(wildcard bsdf/ validate/ plots/ integrator/))
 SOURCES  := $(foreach d,$(FOLDERS),$(wildcard $(d)/*.c))
 HEADERS  := $(foreach d,$(FOLDERS) tests,$(wildcard $(d)/*.h))
 TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
-BENCH    := $(wildcard tests/bench*.c)
+BENCH    := $(wildcard tests/bench*.c tests/calibrate.c)
 HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(BENCH),$(wildcard tests/*.c))
 
 objects   = $(patsubst %.c,$(B)/obj/%.o,$(1))
@@ -320,6 +320,15 @@ coverage: ## run the tests and count the lines that they reach, by folder (gcc)
 bench: tools-found ## what calls, a chi-square and bin masses cost, as ratios and in ns
 	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/bench
 	@build/bin/tests/bench
+
+# Both write their tables into the README; CALIBRATE="--seed 7" for another
+# seed, PUBLISH= to print only.
+CALIBRATE ?=
+PUBLISH   ?= --publish README.md
+.PHONY: calibrate power
+calibrate power: tools-found
+	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/calibrate
+	@build/bin/tests/calibrate $(if $(filter power,$@),--power) $(PUBLISH) $(CALIBRATE)
 
 .PHONY: golden
 golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)
