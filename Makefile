@@ -326,6 +326,8 @@ bench: tools-found ## what calls, a chi-square and bin masses cost, as ratios an
 CALIBRATE ?=
 PUBLISH   ?= --publish README.md
 .PHONY: calibrate power
+calibrate: ## what the checks say of 10^4 sound cases, into the README (10 minutes)
+power: ## which mistakes the checks catch, into the README (15 minutes)
 calibrate power: tools-found
 	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/calibrate
 	@build/bin/tests/calibrate $(if $(filter power,$@),--power) $(PUBLISH) $(CALIBRATE)

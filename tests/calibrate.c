@@ -141,8 +141,11 @@ static bool print_row(FILE *out, const struct calibration *c,
 {
     const double tail = false_alarm / tests_of(c);
     bool ok = true;
-    fprintf(out, "| %s%s%s | %zu |", row->check, row->part ? ", " : "",
-            row->part ? row->part : "", row->cases);
+    fprintf(out, "| %s%s%s", row->check, row->part ? ", " : "",
+            row->part ? row->part : "");
+    if (row->degrees > 0)
+        fprintf(out, " (%.0f degrees)", row->degrees / (double)row->cases);
+    fprintf(out, " | %zu |", row->cases);
     for (int k = 0; k < LEVELS; k++)
         ok &= print_rate(out, row->small[k], row->cases, calibration_level[k],
                          tail);

@@ -33,8 +33,7 @@ struct calibration {
     uint64_t seed;           /* of the first run; one more for each round */
     size_t rounds, directions;
     uint64_t samples;
-    int often; /* jacobian and furnace, dear and without a p, once in so many
-                  runs */
+    int often; /* the checks without a p are run once in so many runs */
 
     /* What was found. */
     size_t models, runs, cases;
