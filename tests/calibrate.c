@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "bsdf/cli.h"
+#include "tests/acceptance.h"
 #include "tests/calibration.h"
 #include "tests/publish.h"
 #include "tests/uniformity.h"
@@ -244,6 +245,34 @@ static bool calibrate(FILE *out, const struct request *r, bool *ok,
     return made;
 }
 
+/* -- power ----------------------------------------------------------------- */
+
+static void progress_of(const char *what, size_t done, size_t of)
+{
+    fprintf(stderr, "\r%s: %zu of %zu, %.0f s\033[K%s", what, done, of,
+            elapsed(), done == of ? "\r\033[K" : "");
+    fflush(stderr);
+}
+
+static bool power(FILE *out, const struct request *r, bool *ok, struct err *err)
+{
+    const struct acceptance a = {
+        .out = out,
+        .seed = r->seed,
+        .samples = 1000000,
+        .sound = 20,
+        .directions = 300,
+        .seeds_pdf = 100,
+        .seeds_alpha = 100,
+        .seeds_leaks = 50,
+        .progress = isatty(2) ? progress_of : NULL,
+    };
+    const bool made = acceptance(&a, ok, err);
+    fprintf(out, "\n");
+    print_machine(out, r->seed);
+    return made;
+}
+
 int main(int argc, char **argv)
 {
     struct request r = { .seed = 1, .rounds = 64, .samples = 50000 };
@@ -260,7 +289,7 @@ int main(int argc, char **argv)
                argc, argv, 0, NULL, &r);
     FILE *out = open_memstream(&text, &size);
     bool made = out || err_set(&err, "out of memory");
-    made = made && calibrate(out, &r, &ok, &err);
+    made = made && (r.power ? power : calibrate)(out, &r, &ok, &err);
     if (out && fclose(out) != 0)
         made = err_set(&err, "out of memory");
     if (made)
