@@ -13,9 +13,10 @@
 #include "validate/run.h"
 
 struct acceptance {
-    FILE *out;     /* tables, in Markdown */
-    uint64_t seed; /* of the first run */
-    uint64_t samples;
+    FILE *out;                     /* tables, in Markdown */
+    uint64_t seed;                 /* of the first run */
+    uint64_t samples;              /* for mistakes */
+    uint64_t sound_samples;        /* for sound models, and for the time */
     size_t sound;                  /* random directions a sound model */
     size_t directions;             /* random directions for bin masses */
     size_t seeds_pdf, seeds_alpha; /* runs for each mistake */

@@ -260,6 +260,7 @@ static bool power(FILE *out, const struct request *r, bool *ok, struct err *err)
         .out = out,
         .seed = r->seed,
         .samples = 1000000,
+        .sound_samples = 100000,
         .sound = 20,
         .directions = 300,
         .seeds_pdf = 100,

@@ -130,8 +130,7 @@ static bool open_still(const struct run *run)
     return run->failed > 0;
 }
 
-/* The checks that have no p of their own and that no other one needs. */
-static uint64_t without_p(void)
+uint64_t calibration_without_p(void)
 {
     static const char *const name[] = { "finite",     "support",  "lobes",
                                         "sample",     "jacobian", "furnace",
@@ -157,7 +156,7 @@ static bool run_one(struct calibration *c, const struct bsdf *b, int model,
     plan.threads = 1;
     plan.escalations = 0;
     if ((round + (size_t)model) % (size_t)c->often)
-        plan.skip = without_p();
+        plan.skip = calibration_without_p();
     for (size_t i = 0; i < n; i++)
         wo[i] = calibration_direction(plan.seed, (uint64_t)model, i,
                                       bsdf_claims(b).two_sided);

@@ -51,6 +51,10 @@ bool calibration_make(struct calibration *c, run_progress *progress,
                       struct err *err);
 void calibration_clear(struct calibration *c);
 
+/** Bits of a plan's skip: the checks that have no p, but for those that cost
+ * nothing. */
+uint64_t calibration_without_p(void);
+
 /** A random direction of the seed's, uniform over the upper hemisphere, or over
  * the sphere. */
 struct vec3 calibration_direction(uint64_t seed, uint64_t stream,

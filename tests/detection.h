@@ -7,7 +7,7 @@
 enum { DETECTION_FINDERS_MAX = 24 };
 
 struct detection {
-    /* What is asked for; one look, without the jacobian, at 1e-6. */
+    /* What is asked for; one look at 1e-6, by the checks that have a p. */
     const struct bsdf_type *type;
     const char *settings; /* of the type */
     struct vec3 wo;
