@@ -1,7 +1,6 @@
 /* acceptance.c - sound models, bin masses, mistakes, threads */
 #include "tests/acceptance.h"
 
-#include <omp.h>
 #include <stdlib.h>
 #include <time.h>
 
@@ -210,7 +209,7 @@ static bool bin_masses(const struct acceptance *a, bool *ok, struct err *err)
             return false;
         fprintf(a->out,
                 "| %g, %g, %s, %s normals | %zu of %zu | %.2g | %.2g | %.2g | "
-                "%.2g | %.1g |%s\n",
+                "%.2g | %.1g%s |\n",
                 at[0], at[1], distributions[i / 2 % 2],
                 i % 2 ? "visible" : "all", m.bins, m.all, m.bin, m.bin_stated,
                 m.total, m.total_stated, m.reference,

@@ -1,7 +1,6 @@
 /* calibration.c - runs of sound models, and a ledger of their p-values */
 #include "tests/calibration.h"
 
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 /* detection.c - the checks on a broken model, over many seeds */
 #include "tests/detection.h"
 
-#include <omp.h>
 #include <stdio.h>
 #include <string.h>
 
