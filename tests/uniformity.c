@@ -80,11 +80,23 @@ struct uniformity uniformity_of(double *value, size_t n)
     return u;
 }
 
+/* The x where the share of a beta distribution below it is p.  GSL's inverse is
+ * not a number for some of thousands; its distribution has its digits. */
+static double beta_inverse(double p, double a, double b)
+{
+    double low = 0, high = 1;
+    for (int i = 0; i < 100; i++) {
+        const double middle = (low + high) / 2;
+        *(gsl_cdf_beta_P(middle, a, b) < p ? &low : &high) = middle;
+    }
+    return high;
+}
+
 struct interval clopper_pearson(size_t k, size_t n, double tail)
 {
     const double hits = (double)k, misses = (double)(n - k);
     return (struct interval){
-        k == 0 ? 0 : gsl_cdf_beta_Pinv(tail, hits, misses + 1),
-        k == n ? 1 : gsl_cdf_beta_Qinv(tail, hits + 1, misses),
+        k == 0 ? 0 : beta_inverse(tail, hits, misses + 1),
+        k == n ? 1 : 1 - beta_inverse(tail, misses, hits + 1),
     };
 }
