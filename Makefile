@@ -62,7 +62,7 @@ SOURCES  := $(foreach d,$(FOLDERS),$(wildcard $(d)/*.c))
 HEADERS  := $(foreach d,$(FOLDERS) tests,$(wildcard $(d)/*.h))
 TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 # Programs of tests/ that `make test` does not run, each with its own target.
-LONG     := $(wildcard $(patsubst %,tests/%.c,bench mutants baselines))
+LONG     := $(wildcard $(patsubst %,tests/%.c,bench mutants baselines calibrate))
 HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
 
 # Loops over lanes, which see more of the registers with -O3.
@@ -359,6 +359,16 @@ baselines: tools-found ## the chi-square tests of three renderers beside ours, i
 .PHONY: mutants-tester
 mutants-tester: tools-found ## mistakes in the checks themselves: a test must notice each
 	@sh tests/mutate_tester.sh build/mutants-tester $(JOBS)
+# Both write their tables into the README; CALIBRATE="--seed 7" for another
+# seed, PUBLISH= to print only.
+CALIBRATE ?=
+PUBLISH   ?= --publish README.md
+.PHONY: calibrate power
+calibrate: ## what the checks say of 10^4 sound cases, into the README (10 minutes)
+power: ## which mistakes the checks catch, into the README (15 minutes)
+calibrate power: tools-found
+	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/calibrate
+	@build/bin/tests/calibrate $(if $(filter power,$@),--power) $(PUBLISH) $(CALIBRATE)
 
 .PHONY: golden
 golden: ## make the golden tables again, in 50 digits (Python, mpmath from PyPI)

@@ -19,7 +19,8 @@ enum fault {
     WEIGHT_FACTOR,  /* the weight alone times size */
     SAMPLE_PDF,     /* the sample's pdf alone times size */
     REFUSES,        /* a share size of good samples is refused */
-    LEAKS,          /* a share size goes anywhere within 45 deg */
+    LEAKS,          /* a share size goes anywhere within 45 deg, or 15
+                       alpha */
     NAN_F,          /* f is no number within a cosine of size to the horizon */
     NEGATIVE_PDF,   /* the pdf is negative there */
     LONG_WI,        /* sampled directions are longer than 1 by size */
@@ -286,7 +287,9 @@ static struct bsdf_sample metal_sample(const void *state, struct vec3 wo,
         return refused;
     struct vec3 wi = vec3_reflect(wo, sampled_h(m, wo, u));
     if (m->fault == LEAKS && u.z < m->size) {
-        const double z = 0.7 + 0.3 * u.x, phi = 2 * PI * u.y;
+        /* Not as far as the pdf underflows to 0, where it would be refused. */
+        const double rim = fmax(0.7, cos(15 * fmin(m->alpha, 0.2)));
+        const double z = rim + (1 - rim) * u.x, phi = 2 * PI * u.y;
         const double r = sqrt((1 - z) * (1 + z));
         wi = (struct vec3){ r * cos(phi), r * sin(phi), z };
     }

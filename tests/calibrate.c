@@ -1,0 +1,304 @@
+/* calibrate.c - how far the verdicts can be trusted, by trying
+ *
+ * Calibration: what the checks say of thousands of sound cases.  Their p-values
+ * must not be small more often than they say, and where they can be uniform
+ * they must be.  Power (--power): mistakes of a given size that must be caught,
+ * sound models that must not, bin masses held against another integral.
+ *
+ * The tables go to standard output and, with --publish, between two lines of a
+ * file, <!-- calibrate --> and <!-- /calibrate --> (or power).  Exit status 1
+ * if anything is worse than it may be.
+ */
+#include <argp.h>
+#include <gsl/gsl_errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "bsdf/cli.h"
+#include "tests/acceptance.h"
+#include "tests/calibration.h"
+#include "tests/publish.h"
+#include "tests/uniformity.h"
+
+/* The chance that a sound program fails the calibration, shared by all of its
+ * tests (Bonferroni): each row has LEVELS rates, and a KS where it can be
+ * uniform. */
+static const double false_alarm = 1e-3;
+
+enum { OPT_SEED = 1, OPT_ROUNDS, OPT_SAMPLES, OPT_PUBLISH, OPT_POWER };
+
+struct request {
+    uint64_t seed, rounds, samples;
+    const char *publish;
+    bool power;
+};
+
+static const struct argp_option options[] = {
+    { "seed", OPT_SEED, "S", 0, "of the first round; 1", 0 },
+    { "rounds", OPT_ROUNDS, "N", 0, "runs a model, each at its own seed; 64",
+      0 },
+    { "samples", OPT_SAMPLES, "N", 0, "of a case; 50000", 0 },
+    { "publish", OPT_PUBLISH, "FILE", 0,
+      "put the tables between the marker lines of a file", 0 },
+    { "power", OPT_POWER, 0, 0, "what mistakes are caught, instead", 0 },
+    { 0 },
+};
+
+static error_t option(int key, char *arg, struct argp_state *state)
+{
+    struct request *r = state->input;
+    struct err err;
+    bool ok = true;
+    switch (key) {
+    case OPT_SEED:
+        ok = cli_count(&r->seed, "--seed", arg, 0, INT64_MAX / 2, &err);
+        break;
+    case OPT_ROUNDS:
+        ok = cli_count(&r->rounds, "--rounds", arg, 1, 100000, &err);
+        break;
+    case OPT_SAMPLES:
+        ok = cli_count(&r->samples, "--samples", arg, 1000, 100000000, &err);
+        break;
+    case OPT_PUBLISH:
+        r->publish = arg;
+        break;
+    case OPT_POWER:
+        r->power = true;
+        break;
+    case ARGP_KEY_ARG:
+        argp_usage(state);
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    if (!ok)
+        argp_failure(state, EXIT_REQUEST, 0, "%s", err.text);
+    return 0;
+}
+
+/* Seconds since the first call. */
+static double elapsed(void)
+{
+    static double first = -1;
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    const double now = (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    first = first < 0 ? now : first;
+    return now - first;
+}
+
+static void progress(void *context, size_t done, size_t of)
+{
+    (void)context;
+    const double left = elapsed() * (double)(of - done) / (double)done;
+    fprintf(stderr, "\r%zu of %zu runs, %.0f s left\033[K%s", done, of, left,
+            done == of ? "\r\033[K" : "");
+    fflush(stderr);
+}
+
+static void print_machine(FILE *out, uint64_t seed)
+{
+    char line[256], model[200] = "unknown", date[20] = "";
+    FILE *f = fopen("/proc/cpuinfo", "r");
+    while (f && fgets(line, sizeof line, f))
+        if (sscanf(line, "model name : %199[^\n]", model) == 1)
+            break;
+    if (f)
+        fclose(f);
+    const time_t now = time(NULL);
+    strftime(date, sizeof date, "%Y-%m-%d", localtime(&now));
+    fprintf(out, "%s, seeds from %llu, %s, %.0f minutes.\n", date,
+            (unsigned long long)seed, model, elapsed() / 60);
+}
+
+/* -- calibration ----------------------------------------------------------- */
+
+/* How many tests share the false alarm. */
+static int tests_of(const struct calibration *c)
+{
+    int n = 0;
+    for (int i = 0; i < c->rows; i++)
+        n += LEVELS + (c->row[i].values > 0);
+    return n;
+}
+
+/* One rate with its 95 % interval; "!" where that is above what is allowed. */
+static bool print_rate(FILE *out, size_t k, size_t n, double level, double tail)
+{
+    const struct interval usual = clopper_pearson(k, n, .025);
+    const struct interval strict = clopper_pearson(k, n, tail);
+    fprintf(out, " %.2f (%.2f to %.2f)%s |", 100 * (double)k / (double)n,
+            100 * usual.low, 100 * usual.high,
+            strict.low > level  ? " **above**"
+            : usual.low > level ? " !"
+                                : "");
+    return strict.low <= level;
+}
+
+static bool print_row(FILE *out, const struct calibration *c,
+                      const struct calibration_row *row, double *room)
+{
+    const double tail = false_alarm / tests_of(c);
+    bool ok = true;
+    fprintf(out, "| %s%s%s", row->check, row->part ? ", " : "",
+            row->part ? row->part : "");
+    if (row->degrees > 0)
+        fprintf(out, " (%.0f degrees)", row->degrees / (double)row->cases);
+    fprintf(out, " | %zu |", row->cases);
+    for (int k = 0; k < LEVELS; k++)
+        ok &= print_rate(out, row->small[k], row->cases, calibration_level[k],
+                         tail);
+    if (row->values == 0) {
+        fprintf(out, " - | - | - |\n");
+        return ok;
+    }
+    const struct uniformity u =
+        uniformity_of(room, calibration_values(row, -1, room));
+    fprintf(out, " %zu | %+.4f %+.4f | %.2g%s |\n", u.n, u.above, -u.below, u.p,
+            u.p_above < tail ? " **above**"
+            : u.p < tail     ? " below"
+                             : "");
+    return ok && u.p_above >= tail;
+}
+
+/* Which models make a row differ from uniform. */
+static void print_why(FILE *out, const struct calibration *c,
+                      const struct calibration_row *row, double *room)
+{
+    const double tail = false_alarm / tests_of(c) / (double)c->models;
+    for (int m = 0; m < (int)c->models; m++) {
+        const size_t n = calibration_values(row, m, room);
+        const struct uniformity u = uniformity_of(room, n);
+        if (n > 0 && u.p < tail)
+            fprintf(out, "- %s, %s: `%s`, %+.3f %+.3f of %zu, p %.2g\n",
+                    row->check, row->part, c->spec[m], u.above, -u.below, n,
+                    u.p);
+    }
+}
+
+static bool print_calibration(FILE *out, const struct calibration *c)
+{
+    const double tail = false_alarm / tests_of(c);
+    bool ok = c->deterministic_failed == 0 && c->runs_failed == 0;
+    double *room = malloc((c->cases + 1) * sizeof *room);
+    if (!room)
+        return false;
+    fprintf(out,
+            "%zu sound cases: %zu models, %zu runs of %zu random directions, "
+            "%llu samples each. ",
+            c->cases, c->models, c->runs, c->directions,
+            (unsigned long long)c->samples);
+    print_machine(out, c->seed);
+    fprintf(
+        out,
+        "\nRuns that failed at the significance of 1e-6: %zu of %zu, below "
+        "%.2g with 95 %% confidence; %zu took a further look. Verdicts "
+        "without a p that failed: %zu of %zu, below %.2g.\n\n",
+        c->runs_failed, c->runs,
+        clopper_pearson(c->runs_failed, c->runs, .05).high, c->runs_further,
+        c->deterministic_failed, c->deterministic,
+        clopper_pearson(c->deterministic_failed, c->deterministic, .05).high);
+    fprintf(out,
+            "| p-value | cases | p <= .05 [%%] | p <= .01 [%%] | p <= .001 "
+            "[%%] | uniform in | off by | KS p |\n"
+            "|---|---|---|---|---|---|---|---|\n");
+    for (int i = 0; i < c->rows; i++)
+        ok &= print_row(out, c, &c->row[i], room);
+    fprintf(out,
+            "\nIn parentheses 95 %% intervals (Clopper and Pearson), \"!\" "
+            "where one is above its level; \"**above**\", a failure, where the "
+            "interval of the confidence 1 - %.2g is, %g shared by %d tests. "
+            "\"off by\" is how far the distribution of the p-values lies above "
+            "and below the uniform one at most: above raises false alarms, and "
+            "fails alike.\n",
+            tail, false_alarm, tests_of(c));
+    if (c->failure[0])
+        fprintf(out, "\nThe first failure: %s\n", c->failure);
+    fprintf(out, "\nFarther from uniform than chance allows, by model (above, "
+                 "below):\n\n");
+    const long before = ftell(out);
+    for (int i = 0; i < c->rows; i++)
+        if (c->row[i].values > 0)
+            print_why(out, c, &c->row[i], room);
+    if (ftell(out) == before)
+        fprintf(out, "- none\n");
+    free(room);
+    return ok;
+}
+
+static bool calibrate(FILE *out, const struct request *r, bool *ok,
+                      struct err *err)
+{
+    static struct calibration c;
+    c = (struct calibration){ .spec = calibration_specs,
+                              .seed = r->seed,
+                              .rounds = r->rounds,
+                              .directions = 10,
+                              .samples = r->samples,
+                              .often = 8 };
+    const bool made = calibration_make(&c, isatty(2) ? progress : NULL, err);
+    if (made)
+        *ok = print_calibration(out, &c);
+    calibration_clear(&c);
+    return made;
+}
+
+/* -- power ----------------------------------------------------------------- */
+
+static void progress_of(const char *what, size_t done, size_t of)
+{
+    fprintf(stderr, "\r%s: %zu of %zu, %.0f s\033[K%s", what, done, of,
+            elapsed(), done == of ? "\r\033[K" : "");
+    fflush(stderr);
+}
+
+static bool power(FILE *out, const struct request *r, bool *ok, struct err *err)
+{
+    const struct acceptance a = {
+        .out = out,
+        .seed = r->seed,
+        .samples = 1000000,
+        .sound_samples = 100000,
+        .sound = 20,
+        .directions = 300,
+        .seeds_pdf = 100,
+        .seeds_alpha = 100,
+        .seeds_leaks = 50,
+        .progress = isatty(2) ? progress_of : NULL,
+    };
+    const bool made = acceptance(&a, ok, err);
+    fprintf(out, "\n");
+    print_machine(out, r->seed);
+    return made;
+}
+
+int main(int argc, char **argv)
+{
+    struct request r = { .seed = 1, .rounds = 64, .samples = 50000 };
+    struct err err;
+    char *text = NULL;
+    size_t size = 0;
+    bool ok = false;
+    gsl_set_error_handler_off();
+    (void)elapsed();
+    argp_err_exit_status = EXIT_REQUEST;
+    argp_parse(&(struct argp){ options, option, NULL,
+                               "Tries how far the verdicts can be trusted.", 0,
+                               0, 0 },
+               argc, argv, 0, NULL, &r);
+    FILE *out = open_memstream(&text, &size);
+    bool made = out || err_set(&err, "out of memory");
+    made = made && (r.power ? power : calibrate)(out, &r, &ok, &err);
+    if (out && fclose(out) != 0)
+        made = err_set(&err, "out of memory");
+    if (made)
+        fputs(text, stdout);
+    if (made && r.publish)
+        made = publish(r.publish, r.power ? "power" : "calibrate", text, &err);
+    if (!made)
+        fprintf(stderr, "calibrate: %s\n", err.text);
+    free(text);
+    return !made ? EXIT_REQUEST : ok ? EXIT_SOUND : EXIT_UNSOUND;
+}
