@@ -215,8 +215,6 @@ struct lanes {
     double lo[LANES_MAX], visible[LANES_MAX]; /* of wo: lambda, g1_per_cos */
     double cos_d[LANES_MAX], shape[LANES_MAX];
     double hx[LANES_MAX], hy[LANES_MAX], hz[LANES_MAX];
-    double x[LANES_MAX], y[LANES_MAX], z[LANES_MAX], pdf[LANES_MAX];
-    double band[BANDS_MAX][LANES_MAX];
 };
 
 LANES static void g1_lanes(size_t n, struct dirs wo, struct lanes *l)
@@ -279,82 +277,85 @@ LANES static void density_lanes(const struct roughconductor *m, size_t n,
         density_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, wi, l, p);
 }
 
-INLINE void draw_put(struct lanes *l, size_t i, struct draw s)
+INLINE void draw_put(struct lanes *l, const struct bsdf_samples *to, size_t i,
+                     struct draw s)
 {
-    l->x[i] = s.wi.x, l->y[i] = s.wi.y, l->z[i] = s.wi.z;
-    l->pdf[i] = s.pdf, l->shape[i] = s.shape, l->cos_d[i] = s.cos_d;
+    to->x[i] = s.wi.x, to->y[i] = s.wi.y, to->z[i] = s.wi.z;
+    to->pdf[i] = s.pdf;
+    l->shape[i] = s.shape, l->cos_d[i] = s.cos_d;
 }
 
 INLINE void draw_loop(const struct roughconductor *m, struct facets facets,
-                      size_t n, struct dirs wo, struct lanes *l)
+                      size_t n, struct dirs wo, struct lanes *l,
+                      const struct bsdf_samples *out)
 {
+    const struct bsdf_samples to = *out;
     LANES_LOOP
     for (size_t i = 0; i < n; i++) {
         const struct vec3 h = { l->hx[i], l->hy[i], l->hz[i] };
         draw_put(
-            l, i,
+            l, &to, i,
             draw_at(m, facets, dirs_at(wo, i), h, l->lo[i], l->visible[i]));
     }
     LANES_LOOP
     for (size_t i = 0; i < n; i++)
-        draw_put(l, i,
-                 draw_kept((struct draw){ { l->x[i], l->y[i], l->z[i] },
-                                          l->pdf[i],
+        draw_put(l, &to, i,
+                 draw_kept((struct draw){ { to.x[i], to.y[i], to.z[i] },
+                                          to.pdf[i],
                                           l->shape[i],
                                           l->cos_d[i] }));
 }
 
 LANES static void draw_lanes(const struct roughconductor *m, size_t n,
-                             struct dirs wo, struct lanes *l)
+                             struct dirs wo, struct lanes *l,
+                             const struct bsdf_samples *to)
 {
     if (m->facets.family == NDF_GGX)
-        draw_loop(m, facets_as(m->facets, NDF_GGX), n, wo, l);
+        draw_loop(m, facets_as(m->facets, NDF_GGX), n, wo, l, to);
     else
-        draw_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, l);
+        draw_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, l, to);
 }
 
+/* band[b] may be NULL. */
 INLINE void tint_loop(const struct roughconductor *m, int fresnel, size_t n,
-                      struct lanes *l)
+                      const struct lanes *l, double *const *band)
 {
-    for (int b = 0; b < m->bands; b++)
+    for (int b = 0; b < m->bands; b++) {
+        double *const to = band[b];
         LANES_LOOP
-    for (size_t i = 0; i < n; i++)
-        l->band[b][i] = tinted(m, fresnel, b, l->cos_d[i], l->shape[i]);
+        for (size_t i = 0; i < (to ? n : 0); i++)
+            to[i] = tinted(m, fresnel, b, l->cos_d[i], l->shape[i]);
+    }
 }
 
 LANES static void tint_lanes(const struct roughconductor *m, size_t n,
-                             struct lanes *l)
+                             const struct lanes *l, double *const *band)
 {
     if (m->fresnel == EXACT)
-        tint_loop(m, EXACT, n, l);
+        tint_loop(m, EXACT, n, l, band);
     else if (m->fresnel == APPROX)
-        tint_loop(m, APPROX, n, l);
+        tint_loop(m, APPROX, n, l, band);
     else
-        tint_loop(m, SCHLICK, n, l);
-    for (int b = m->bands; b < BANDS_MAX; b++)
-        for (size_t i = 0; i < n; i++)
-            l->band[b][i] = 0;
-}
-
-static struct spectrum band_at(const struct lanes *l, size_t i)
-{
-    return (struct spectrum){ { l->band[0][i], l->band[1][i], l->band[2][i],
-                                l->band[3][i] } };
+        tint_loop(m, SCHLICK, n, l, band);
 }
 
 static void eval_many(const void *state, size_t n, struct dirs wo,
                       struct dirs wi, struct spectrum *f)
 {
     const struct roughconductor *m = state;
+    double band[BANDS_MAX][LANES_MAX] = { { 0 } };
     struct lanes l;
     for (size_t at = 0, k; at < n; at += k) {
         const struct dirs o = dirs_from(wo, at), i = dirs_from(wi, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
         look(m, k, o, &l);
         shape_lanes(m, k, o, i, &l);
-        tint_lanes(m, k, &l);
+        tint_lanes(m, k, &l,
+                   (double *const[]){ band[0], band[1], band[2], band[3] });
         for (size_t lane = 0; lane < k; lane++)
-            f[at + lane] = band_at(&l, lane);
+            f[at + lane] =
+                (struct spectrum){ { band[0][lane], band[1][lane],
+                                     band[2][lane], band[3][lane] } };
     }
 }
 
@@ -372,7 +373,7 @@ static void pdf_many(const void *state, size_t n, struct dirs wo,
 }
 
 static void sample_many(const void *state, size_t n, struct dirs wo,
-                        struct dirs u, struct bsdf_sample *s)
+                        struct dirs u, struct bsdf_samples out)
 {
     const struct roughconductor *m = state;
     struct lanes l;
@@ -384,14 +385,10 @@ static void sample_many(const void *state, size_t n, struct dirs wo,
             facets_visible_many(m->facets, k, o, v, l.hx, l.hy, l.hz);
         else
             facets_all_many(m->facets, k, v, l.hx, l.hy, l.hz);
-        draw_lanes(m, k, o, &l);
-        tint_lanes(m, k, &l);
-        for (size_t i = 0; i < k; i++)
-            s[at + i] = (struct bsdf_sample){
-                .wi = { l.x[i], l.y[i], l.z[i] },
-                .pdf = l.pdf[i],
-                .weight = band_at(&l, i),
-            };
+        const struct bsdf_samples to = bsdf_samples_from(&out, at);
+        draw_lanes(m, k, o, &l, &to);
+        tint_lanes(m, k, &l, to.weight);
+        memset(to.delta, 0, k * sizeof *to.delta);
     }
 }
 
