@@ -64,7 +64,8 @@ HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(BENCH),$(wildcard tests/*.c))
 # Loops over lanes, which see more of the registers with -O3.
 ifeq ($(config),release)
 LANED    := $(patsubst %,$(B)/obj/%.o,bsdf/diffuse bsdf/facets bsdf/rng \
-              bsdf/roughconductor bsdf/roughdielectric)
+              bsdf/roughconductor bsdf/roughdielectric validate/partition \
+              validate/quadrature validate/sphere validate/survey)
 $(LANED): FLAGS += -O3
 endif
 

@@ -463,12 +463,8 @@ void bsdf_pdf_many(const struct bsdf *b, size_t n, struct dirs wo,
 
 struct bsdf_samples bsdf_samples_from(const struct bsdf_samples *s, size_t i)
 {
-    struct bsdf_samples from = { s->x + i,
-                                 s->y + i,
-                                 s->z + i,
-                                 s->pdf + i,
-                                 { NULL },
-                                 s->delta + i };
+    struct bsdf_samples from = { s->x + i,   s->y + i, s->z + i,
+                                 s->pdf + i, { NULL }, s->delta + i };
     for (int b = 0; b < BANDS_MAX; b++)
         from.weight[b] = s->weight[b] ? s->weight[b] + i : NULL;
     return from;
@@ -476,10 +472,9 @@ struct bsdf_samples bsdf_samples_from(const struct bsdf_samples *s, size_t i)
 
 struct bsdf_sample bsdf_samples_at(const struct bsdf_samples *s, size_t i)
 {
-    struct bsdf_sample a = { { s->x[i], s->y[i], s->z[i] },
-                             s->pdf[i],
-                             { { 0 } },
-                             s->delta[i] };
+    struct bsdf_sample a = {
+        { s->x[i], s->y[i], s->z[i] }, s->pdf[i], { { 0 } }, s->delta[i]
+    };
     for (int b = 0; b < BANDS_MAX; b++)
         a.weight.band[b] = s->weight[b] ? s->weight[b][i] : 0;
     return a;
@@ -522,9 +517,7 @@ void bsdf_sample_many(const struct bsdf *b, size_t n, struct dirs wo,
         bool delta[BLOCK];
     } room;
     double(*const a)[BLOCK] = room.number;
-    struct bsdf_samples out = {
-        a[0], a[1], a[2], a[3], { NULL }, room.delta
-    };
+    struct bsdf_samples out = { a[0], a[1], a[2], a[3], { NULL }, room.delta };
     for (int band = 0; band < b->bands.count; band++)
         out.weight[band] = a[4 + band];
     for (size_t at = 0, k; at < n; at += k) {

@@ -113,27 +113,21 @@ INLINE double density(const struct roughconductor *m, struct facets facets,
     return above(wo, wi) ? p : 0;
 }
 
-/* A sample before F. */
+/* A sample without its weight, by a facet with the normal's z. */
 struct draw {
     struct vec3 wi;
-    double pdf, shape, cos_d; /* weight = F(cos_d) shape */
+    double pdf, cos_d, z;
 };
 
 /* By a facet with its normal along h, of any length. */
 INLINE struct draw draw_at(const struct roughconductor *m, struct facets facets,
-                           struct vec3 wo, struct vec3 h, double lo,
-                           double visible)
+                           struct vec3 wo, struct vec3 h, double visible)
 {
     const double length = 1 / vec3_length(h);
     const struct vec3 n = vec3_scale(length, h);
-    const double cos_d = vec3_dot(wo, n);
     const struct vec3 wi = vec3_unit_again(vec3_reflect(wo, n));
-    const double p = density(m, facets, wo, wi, visible);
-    const double per_g = per_g2(m, lo, facets_lambda(facets, wi));
-    /* f cos_i / pdf, with D divided out by hand. */
-    const double weight =
-        m->sample_visible ? (1 + lo) / per_g : cos_d / (wo.z * n.z * per_g);
-    return (struct draw){ wi, p, weight, cos_d };
+    return (struct draw){ wi, density(m, facets, wo, wi, visible),
+                          vec3_dot(wo, n), n.z };
 }
 
 /* All 0 where a draw is refused; p is 0 unless both are above. */
@@ -143,9 +137,20 @@ INLINE struct draw draw_kept(struct draw s)
     return (struct draw){
         .wi = { good ? s.wi.x : 0, good ? s.wi.y : 0, good ? s.wi.z : 0 },
         .pdf = good ? s.pdf : 0,
-        .shape = good ? s.shape : 0,
         .cos_d = good ? fm_min(s.cos_d, 1) : 1,
+        .z = s.z,
     };
+}
+
+/* f cos_i / (F pdf), with D divided out by hand, of a draw that was kept; 0 of
+ * one that was not. */
+INLINE double draw_weight(const struct roughconductor *m, struct facets facets,
+                          struct vec3 wo, struct draw s, double lo)
+{
+    const double per_g = per_g2(m, lo, facets_lambda(facets, s.wi));
+    const double weight =
+        m->sample_visible ? (1 + lo) / per_g : s.cos_d / (wo.z * s.z * per_g);
+    return s.pdf > 0 ? weight : 0;
 }
 
 /* The model's F in one band, with its factor, times a common one. */
@@ -200,11 +205,11 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
                               : facets_all(m->facets, u.x, u.y);
     const double lo = facets_lambda(m->facets, wo);
     const struct draw s =
-        draw_kept(draw_at(m, m->facets, wo, h, lo, g1_per_cos(wo, lo)));
+        draw_kept(draw_at(m, m->facets, wo, h, g1_per_cos(wo, lo)));
     return (struct bsdf_sample){
         .wi = s.wi,
         .pdf = s.pdf,
-        .weight = tinted_all(m, s.cos_d, s.shape),
+        .weight = tinted_all(m, s.cos_d, draw_weight(m, m->facets, wo, s, lo)),
     };
 }
 
@@ -277,12 +282,20 @@ LANES static void density_lanes(const struct roughconductor *m, size_t n,
         density_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, wi, l, p);
 }
 
+INLINE struct draw draw_of(const struct lanes *l, const struct bsdf_samples *to,
+                           size_t i)
+{
+    return (struct draw){
+        { to->x[i], to->y[i], to->z[i] }, to->pdf[i], l->cos_d[i], l->hz[i]
+    };
+}
+
 INLINE void draw_put(struct lanes *l, const struct bsdf_samples *to, size_t i,
                      struct draw s)
 {
     to->x[i] = s.wi.x, to->y[i] = s.wi.y, to->z[i] = s.wi.z;
     to->pdf[i] = s.pdf;
-    l->shape[i] = s.shape, l->cos_d[i] = s.cos_d;
+    l->cos_d[i] = s.cos_d, l->hz[i] = s.z;
 }
 
 INLINE void draw_loop(const struct roughconductor *m, struct facets facets,
@@ -293,17 +306,16 @@ INLINE void draw_loop(const struct roughconductor *m, struct facets facets,
     LANES_LOOP
     for (size_t i = 0; i < n; i++) {
         const struct vec3 h = { l->hx[i], l->hy[i], l->hz[i] };
-        draw_put(
-            l, &to, i,
-            draw_at(m, facets, dirs_at(wo, i), h, l->lo[i], l->visible[i]));
+        draw_put(l, &to, i,
+                 draw_at(m, facets, dirs_at(wo, i), h, l->visible[i]));
     }
     LANES_LOOP
     for (size_t i = 0; i < n; i++)
-        draw_put(l, &to, i,
-                 draw_kept((struct draw){ { to.x[i], to.y[i], to.z[i] },
-                                          to.pdf[i],
-                                          l->shape[i],
-                                          l->cos_d[i] }));
+        draw_put(l, &to, i, draw_kept(draw_of(l, &to, i)));
+    LANES_LOOP
+    for (size_t i = 0; i < (to.weight[0] ? n : 0); i++)
+        l->shape[i] = draw_weight(m, facets, dirs_at(wo, i), draw_of(l, &to, i),
+                                  l->lo[i]);
 }
 
 LANES static void draw_lanes(const struct roughconductor *m, size_t n,

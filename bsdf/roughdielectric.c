@@ -313,10 +313,9 @@ static void sample_many(const void *state, size_t n, struct dirs wo,
         else
             facets_all_many(m->facets, k, v, l.hx, l.hy, l.hz);
         for (size_t i = 0; i < k; i++) {
-            const struct bsdf_sample s =
-                sample_of(m, dirs_at(o, i),
-                          (struct vec3){ l.hx[i], l.hy[i], l.hz[i] }, v.z[i],
-                          l.lo[i]);
+            const struct bsdf_sample s = sample_of(
+                m, dirs_at(o, i), (struct vec3){ l.hx[i], l.hy[i], l.hz[i] },
+                v.z[i], l.lo[i]);
             bsdf_samples_put(&out, at + i, &s);
         }
     }

@@ -138,6 +138,19 @@ void subject_draw(const struct subject *s, struct rng rng, uint64_t first,
     }
 }
 
+void subject_draw_into(const struct subject *s, struct rng rng, uint64_t first,
+                       size_t n, struct bsdf_samples out)
+{
+    double x[SUBJECT_BATCH], y[SUBJECT_BATCH], z[SUBJECT_BATCH];
+    struct repeated r;
+    const struct dirs wo = repeat(&r, s->wo, n), u = { x, y, z };
+    for (size_t at = 0; at < n; at += SUBJECT_BATCH) {
+        rng_uniform_many(rng, first + at, batch(n, at), x, y, z);
+        bsdf_sample_into(s->bsdf, batch(n, at), wo, u,
+                         bsdf_samples_from(&out, at));
+    }
+}
+
 bool subject_refused(const struct bsdf_sample *a)
 {
     return a->pdf == 0 && spectrum_is(a->weight, BANDS_MAX, 0);

@@ -69,6 +69,10 @@ void subject_draw(const struct subject *s, struct rng rng, uint64_t from,
 void subject_sample(const struct subject *s, size_t n, struct dirs u,
                     struct bsdf_sample *out);
 
+/** The same into arrays. */
+void subject_draw_into(const struct subject *s, struct rng rng, uint64_t from,
+                       size_t n, struct bsdf_samples out);
+
 /** All zeros, as when the light is absorbed. */
 bool subject_refused(const struct bsdf_sample *a);
 
