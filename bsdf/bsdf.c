@@ -510,8 +510,10 @@ void bsdf_sample_into(const struct bsdf *b, size_t n, struct dirs wo,
 void bsdf_sample_many(const struct bsdf *b, size_t n, struct dirs wo,
                       struct dirs u, struct bsdf_sample *sample)
 {
-    /* As many as another program wants at a time. */
+    /* As many as another program wants at a time, of what is computed here as
+     * many as stay in the first cache. */
     enum { BLOCK = 4096 };
+    const size_t most = b->type->trouble ? BLOCK : 256;
     struct {
         double number[4 + BANDS_MAX][BLOCK];
         bool delta[BLOCK];
@@ -521,7 +523,7 @@ void bsdf_sample_many(const struct bsdf *b, size_t n, struct dirs wo,
     for (int band = 0; band < b->bands.count; band++)
         out.weight[band] = a[4 + band];
     for (size_t at = 0, k; at < n; at += k) {
-        k = n - at < BLOCK ? n - at : BLOCK;
+        k = n - at < most ? n - at : most;
         bsdf_sample_into(b, k, dirs_from(wo, at), dirs_from(u, at), out);
         for (size_t i = 0; i < k; i++)
             sample[at + i] = bsdf_samples_at(&out, i);

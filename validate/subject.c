@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bsdf/frame.h"
+#include "bsdf/lanes.h"
 #include "validate/energy.h"
 
 const struct plan plan_default = {
@@ -27,6 +28,11 @@ struct rng subject_rng(const struct subject *s, enum stream purpose)
     uint64_t h = hash(0xcbf29ce484222325, spec, strlen(spec));
     h = hash(h, &s->wo, sizeof s->wo);
     return (struct rng){ s->plan->seed, hash(h, tag, s->stage > 0 ? 2 : 1) };
+}
+
+size_t subject_batch(const struct subject *s)
+{
+    return bsdf_has_trouble(s->bsdf) ? SUBJECT_BATCH : 4 * LANES_MAX;
 }
 
 struct subject subject_plain(const struct bsdf *b, struct vec3 wo,

@@ -23,7 +23,7 @@ enum stream {
     STREAM_RANDOMISE
 };
 
-enum { SUBJECT_BATCH = 4096 }; /* directions that are worth asking for */
+enum { SUBJECT_BATCH = 4096 }; /* the most that are worth asking for at once */
 
 struct energy;
 
@@ -52,6 +52,10 @@ void subject_clear(struct subject *s);
  * clearing. */
 struct subject subject_plain(const struct bsdf *b, struct vec3 wo,
                              const struct plan *plan);
+
+/** How many to ask for at a time: SUBJECT_BATCH of another program; of a model
+ * of ours as many as stay in the first cache. */
+size_t subject_batch(const struct subject *s);
 
 struct rng subject_rng(const struct subject *s, enum stream purpose);
 

@@ -103,6 +103,17 @@ LANES static void judge(struct drawn *d, size_t n, double unit_error)
     }
 }
 
+INLINE void weigh_one(const struct bsdf_samples *a, const double *weight,
+                      size_t i, double cap, double side, double compression,
+                      double *sum, double *square, double *peak)
+{
+    double w = weight[i] * (a->z[i] * side >= 0 ? 1 : compression);
+    w = w > cap ? cap : w; /* a NaN stays */
+    *sum += w;
+    *square += w * w;
+    *peak += w * w * (a->delta[i] ? 0 : a->pdf[i]);
+}
+
 /* Adds to the sums of a band.  Eight partial sums, whatever the width of the
  * vectors, so that the same numbers are added in the same order everywhere. */
 enum { PARTIAL = 8 };
@@ -113,18 +124,15 @@ LANES static void weigh(const struct drawn *d, size_t n, int band, double cap,
     const struct bsdf_samples a = d->at;
     const double *weight = a.weight[band];
     double sum[PARTIAL] = { 0 }, square[PARTIAL] = { 0 }, peak[PARTIAL] = { 0 };
-    for (size_t at = 0; at < n; at += PARTIAL) {
-        const size_t k = n - at < PARTIAL ? n - at : PARTIAL;
+    size_t at = 0;
+    for (; at + PARTIAL <= n; at += PARTIAL)
         LANES_LOOP
-        for (size_t i = 0; i < k; i++) {
-            const size_t j = at + i;
-            double w = weight[j] * (a.z[j] * side >= 0 ? 1 : compression);
-            w = w > cap ? cap : w; /* a NaN stays */
-            sum[i] += w;
-            square[i] += w * w;
-            peak[i] += w * w * (a.delta[j] ? 0 : a.pdf[j]);
-        }
-    }
+    for (int i = 0; i < PARTIAL; i++)
+        weigh_one(&a, weight, at + (size_t)i, cap, side, compression, &sum[i],
+                  &square[i], &peak[i]);
+    for (int i = 0; at < n; at++, i++)
+        weigh_one(&a, weight, at, cap, side, compression, &sum[i], &square[i],
+                  &peak[i]);
     for (int i = 0; i < PARTIAL; i++) {
         sums->sum += sum[i];
         sums->square += square[i];
@@ -166,9 +174,10 @@ static bool samples_draw(struct subject *s)
     const size_t bins = partition_bins(v->partition);
     struct drawn *d = drawn_new(bsdf_bands(s->bsdf)->count);
     v->samples = s->samples;
-    for (uint64_t at = 0; d && at < v->samples; at += BATCH) {
+    const size_t batch = subject_batch(s);
+    for (uint64_t at = 0; d && at < v->samples; at += batch) {
         const uint64_t left = v->samples - at;
-        const size_t n = left < BATCH ? (size_t)left : BATCH;
+        const size_t n = left < batch ? (size_t)left : batch;
         subject_draw_into(s, rng, at, n, d->at);
         sort(s, d, n, v->count);
     }
