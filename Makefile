@@ -65,7 +65,8 @@ HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(BENCH),$(wildcard tests/*.c))
 ifeq ($(config),release)
 LANED    := $(patsubst %,$(B)/obj/%.o,bsdf/diffuse bsdf/facets bsdf/rng \
               bsdf/roughconductor bsdf/roughdielectric validate/partition \
-              validate/quadrature validate/sphere validate/survey)
+              tests/bench validate/partition validate/quadrature \
+              validate/sphere validate/survey)
 $(LANED): FLAGS += -O3
 endif
 

@@ -102,14 +102,14 @@ INLINE double shape(const struct roughconductor *m, struct facets facets,
     return seen ? f : 0;
 }
 
-/* From g1_per_cos, which is asked for visible normals alone. */
-INLINE double density(const struct roughconductor *m, struct facets facets,
-                      struct vec3 wo, struct vec3 wi, double visible)
+/* Of visible normals from g1_per_cos, or of all. */
+INLINE double density(struct facets facets, bool visible, struct vec3 wo,
+                      struct vec3 wi, double g1)
 {
     double h2;
     const struct vec3 h = facets_half(wo, wi, &h2);
-    const double d = facets_d(facets, h, h2);
-    const double p = m->sample_visible ? d * visible : d * h.z / (2 * h2);
+    const double p =
+        visible ? facets_d(facets, h, h2) * g1 : facets_d_z(facets, h, h2) / 2;
     return above(wo, wi) ? p : 0;
 }
 
@@ -120,13 +120,13 @@ struct draw {
 };
 
 /* By a facet with its normal along h, of any length. */
-INLINE struct draw draw_at(const struct roughconductor *m, struct facets facets,
-                           struct vec3 wo, struct vec3 h, double visible)
+INLINE struct draw draw_at(struct facets facets, bool visible, struct vec3 wo,
+                           struct vec3 h, double g1)
 {
     const double length = 1 / vec3_length(h);
     const struct vec3 n = vec3_scale(length, h);
     const struct vec3 wi = vec3_unit_again(vec3_reflect(wo, n));
-    return (struct draw){ wi, density(m, facets, wo, wi, visible),
+    return (struct draw){ wi, density(facets, visible, wo, wi, g1),
                           vec3_dot(wo, n), n.z };
 }
 
@@ -191,7 +191,7 @@ static double pdf(const void *state, struct vec3 wo, struct vec3 wi)
     if (!above(wo, wi))
         return 0;
     const double lo = m->sample_visible ? facets_lambda(m->facets, wo) : 0;
-    return density(m, m->facets, wo, wi, g1_per_cos(wo, lo));
+    return density(m->facets, m->sample_visible, wo, wi, g1_per_cos(wo, lo));
 }
 
 static struct bsdf_sample sample(const void *state, struct vec3 wo,
@@ -204,8 +204,8 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
                               ? facets_visible(m->facets, wo, u.x, u.y)
                               : facets_all(m->facets, u.x, u.y);
     const double lo = facets_lambda(m->facets, wo);
-    const struct draw s =
-        draw_kept(draw_at(m, m->facets, wo, h, g1_per_cos(wo, lo)));
+    const struct draw s = draw_kept(
+        draw_at(m->facets, m->sample_visible, wo, h, g1_per_cos(wo, lo)));
     return (struct bsdf_sample){
         .wi = s.wi,
         .pdf = s.pdf,
@@ -217,7 +217,7 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
  */
 
 struct lanes {
-    double lo[LANES_MAX], visible[LANES_MAX]; /* of wo: lambda, g1_per_cos */
+    double lo[LANES_MAX], g1[LANES_MAX]; /* of wo: lambda, g1_per_cos */
     double cos_d[LANES_MAX], shape[LANES_MAX];
     double hx[LANES_MAX], hy[LANES_MAX], hz[LANES_MAX];
 };
@@ -226,7 +226,7 @@ LANES static void g1_lanes(size_t n, struct dirs wo, struct lanes *l)
 {
     LANES_LOOP
     for (size_t i = 0; i < n; i++)
-        l->visible[i] = g1_per_cos(dirs_at(wo, i), l->lo[i]);
+        l->g1[i] = g1_per_cos(dirs_at(wo, i), l->lo[i]);
 }
 
 /* What depends on wo alone, once if there is but one. */
@@ -238,7 +238,7 @@ static void look(const struct roughconductor *m, size_t n, struct dirs wo,
     g1_lanes(one ? 1 : n, wo, l);
     if (one) {
         facets_fill(n, l->lo);
-        facets_fill(n, l->visible);
+        facets_fill(n, l->g1);
     }
 }
 
@@ -261,25 +261,34 @@ LANES static void shape_lanes(const struct roughconductor *m, size_t n,
         shape_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, wi, l);
 }
 
-INLINE void density_loop(const struct roughconductor *m, struct facets facets,
-                         size_t n, struct dirs wo, struct dirs wi,
-                         const struct lanes *l, double *p)
+INLINE void density_loop(struct facets facets, bool visible, size_t n,
+                         struct dirs wo, struct dirs wi, const struct lanes *l,
+                         double *p)
 {
-    const struct roughconductor copy = *m;
     LANES_LOOP
     for (size_t i = 0; i < n; i++)
-        p[i] = density(&copy, facets, dirs_at(wo, i), dirs_at(wi, i),
-                       l->visible[i]);
+        p[i] =
+            density(facets, visible, dirs_at(wo, i), dirs_at(wi, i), l->g1[i]);
 }
 
-LANES static void density_lanes(const struct roughconductor *m, size_t n,
-                                struct dirs wo, struct dirs wi,
-                                const struct lanes *l, double *p)
+/* Each of the two a loop without a branch on the family. */
+LANES static void density_visible(struct facets f, size_t n, struct dirs wo,
+                                  struct dirs wi, const struct lanes *l,
+                                  double *p)
 {
-    if (m->facets.family == NDF_GGX)
-        density_loop(m, facets_as(m->facets, NDF_GGX), n, wo, wi, l, p);
+    if (f.family == NDF_GGX)
+        density_loop(facets_as(f, NDF_GGX), true, n, wo, wi, l, p);
     else
-        density_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, wi, l, p);
+        density_loop(facets_as(f, NDF_BECKMANN), true, n, wo, wi, l, p);
+}
+
+LANES static void density_all(struct facets f, size_t n, struct dirs wo,
+                              struct dirs wi, const struct lanes *l, double *p)
+{
+    if (f.family == NDF_GGX)
+        density_loop(facets_as(f, NDF_GGX), false, n, wo, wi, l, p);
+    else
+        density_loop(facets_as(f, NDF_BECKMANN), false, n, wo, wi, l, p);
 }
 
 INLINE struct draw draw_of(const struct lanes *l, const struct bsdf_samples *to,
@@ -298,8 +307,8 @@ INLINE void draw_put(struct lanes *l, const struct bsdf_samples *to, size_t i,
     l->cos_d[i] = s.cos_d, l->hz[i] = s.z;
 }
 
-INLINE void draw_loop(const struct roughconductor *m, struct facets facets,
-                      size_t n, struct dirs wo, struct lanes *l,
+INLINE void draw_loop(struct facets facets, bool visible, size_t n,
+                      struct dirs wo, struct lanes *l,
                       const struct bsdf_samples *out)
 {
     const struct bsdf_samples to = *out;
@@ -307,25 +316,50 @@ INLINE void draw_loop(const struct roughconductor *m, struct facets facets,
     for (size_t i = 0; i < n; i++) {
         const struct vec3 h = { l->hx[i], l->hy[i], l->hz[i] };
         draw_put(l, &to, i,
-                 draw_at(m, facets, dirs_at(wo, i), h, l->visible[i]));
+                 draw_at(facets, visible, dirs_at(wo, i), h, l->g1[i]));
     }
     LANES_LOOP
     for (size_t i = 0; i < n; i++)
         draw_put(l, &to, i, draw_kept(draw_of(l, &to, i)));
-    LANES_LOOP
-    for (size_t i = 0; i < (to.weight[0] ? n : 0); i++)
-        l->shape[i] = draw_weight(m, facets, dirs_at(wo, i), draw_of(l, &to, i),
-                                  l->lo[i]);
 }
 
-LANES static void draw_lanes(const struct roughconductor *m, size_t n,
-                             struct dirs wo, struct lanes *l,
-                             const struct bsdf_samples *to)
+LANES static void draw_visible(struct facets f, size_t n, struct dirs wo,
+                               struct lanes *l, const struct bsdf_samples *to)
+{
+    if (f.family == NDF_GGX)
+        draw_loop(facets_as(f, NDF_GGX), true, n, wo, l, to);
+    else
+        draw_loop(facets_as(f, NDF_BECKMANN), true, n, wo, l, to);
+}
+
+LANES static void draw_all(struct facets f, size_t n, struct dirs wo,
+                           struct lanes *l, const struct bsdf_samples *to)
+{
+    if (f.family == NDF_GGX)
+        draw_loop(facets_as(f, NDF_GGX), false, n, wo, l, to);
+    else
+        draw_loop(facets_as(f, NDF_BECKMANN), false, n, wo, l, to);
+}
+
+INLINE void weight_loop(const struct roughconductor *m, struct facets facets,
+                        size_t n, struct dirs wo, struct lanes *l,
+                        const struct bsdf_samples *drawn)
+{
+    const struct bsdf_samples s = *drawn;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        l->shape[i] =
+            draw_weight(m, facets, dirs_at(wo, i), draw_of(l, &s, i), l->lo[i]);
+}
+
+LANES static void weight_lanes(const struct roughconductor *m, size_t n,
+                               struct dirs wo, struct lanes *l,
+                               const struct bsdf_samples *drawn)
 {
     if (m->facets.family == NDF_GGX)
-        draw_loop(m, facets_as(m->facets, NDF_GGX), n, wo, l, to);
+        weight_loop(m, facets_as(m->facets, NDF_GGX), n, wo, l, drawn);
     else
-        draw_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, l, to);
+        weight_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, l, drawn);
 }
 
 /* band[b] may be NULL. */
@@ -380,7 +414,10 @@ static void pdf_many(const void *state, size_t n, struct dirs wo,
         const struct dirs o = dirs_from(wo, at), i = dirs_from(wi, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
         look(m, k, o, &l);
-        density_lanes(m, k, o, i, &l, p + at);
+        if (m->sample_visible)
+            density_visible(m->facets, k, o, i, &l, p + at);
+        else
+            density_all(m->facets, k, o, i, &l, p + at);
     }
 }
 
@@ -393,13 +430,18 @@ static void sample_many(const void *state, size_t n, struct dirs wo,
         const struct dirs o = dirs_from(wo, at), v = dirs_from(u, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
         look(m, k, o, &l);
-        if (m->sample_visible)
-            facets_visible_many(m->facets, k, o, v, l.hx, l.hy, l.hz);
-        else
-            facets_all_many(m->facets, k, v, l.hx, l.hy, l.hz);
         const struct bsdf_samples to = bsdf_samples_from(&out, at);
-        draw_lanes(m, k, o, &l, &to);
-        tint_lanes(m, k, &l, to.weight);
+        if (m->sample_visible) {
+            facets_visible_many(m->facets, k, o, v, l.hx, l.hy, l.hz);
+            draw_visible(m->facets, k, o, &l, &to);
+        } else {
+            facets_all_many(m->facets, k, v, l.hx, l.hy, l.hz);
+            draw_all(m->facets, k, o, &l, &to);
+        }
+        if (to.weight[0]) {
+            weight_lanes(m, k, o, &l, &to);
+            tint_lanes(m, k, &l, to.weight);
+        }
         memset(to.delta, 0, k * sizeof *to.delta);
     }
 }
