@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "bsdf/fastmath.h"
+#include "bsdf/lanes.h"
+
 enum {
     ORDER = QUADRATURE_ORDER,
     NODES = QUADRATURE_NODES,
@@ -54,39 +57,64 @@ struct work {
     size_t leaves, size;
 };
 
+/* The nodes of n rectangles. */
+LANES static void nodes(const struct rectangle *r, size_t n, struct room *a)
+{
+    for (size_t at = 0; at < n; at++) {
+        const double dx = (r[at].x1 - r[at].x0) / 2;
+        const double dy = (r[at].y1 - r[at].y0) / 2;
+        const double x0 = r[at].x0, y0 = r[at].y0;
+        LANES_LOOP
+        for (int i = 0; i < ORDER; i++) {
+            a->x[at][i] = x0 + dx * (1 + node[i]);
+            a->y[at][i] = y0 + dy * (1 + node[i]);
+        }
+    }
+}
+
+/* The weighted sum of a rectangle's values and the largest of them; by
+ * SHARES partial ones, whatever the width of the vectors, so that the same
+ * numbers are added in the same order everywhere. */
+enum { SHARES = 4 };
+INLINE double weighted(const double *weight, const double *f, double *height)
+{
+    double sum[SHARES] = { 0 }, top[SHARES] = { 0 };
+    for (int k = 0; k < NODES; k += SHARES)
+        LANES_LOOP
+    for (int i = 0; i < SHARES; i++) {
+        sum[i] += weight[k + i] * f[k + i];
+        top[i] = fm_max(fabs(f[k + i]), top[i]); /* a NaN is passed over */
+    }
+    for (int i = 0; i < SHARES; i++)
+        *height = fm_max(top[i], *height);
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
+LANES static void weigh(const double *value, const struct rectangle *r,
+                        size_t n, int parts, struct found *found)
+{
+    double weight[NODES];
+    for (int k = 0; k < NODES; k++)
+        weight[k] = node_weight[k / ORDER] * node_weight[k % ORDER];
+    for (size_t at = 0; at < n; at++)
+        found[at].height = 0;
+    for (int part = 0; part < parts; part++)
+        for (size_t at = 0; at < n; at++, value += NODES)
+            found[at].value[part] = (r[at].x1 - r[at].x0) *
+                                    (r[at].y1 - r[at].y0) / 4 *
+                                    weighted(weight, value, &found[at].height);
+}
+
 /* The rule on n rectangles, at most RULES. */
 static void rules(struct work *w, const struct rectangle *r, size_t n,
                   struct found *found)
 {
     struct room *a = w->room;
-    for (size_t at = 0; at < n; at++) {
-        const double dx = (r[at].x1 - r[at].x0) / 2;
-        const double dy = (r[at].y1 - r[at].y0) / 2;
-        for (int i = 0; i < ORDER; i++) {
-            a->x[at][i] = r[at].x0 + dx * (1 + node[i]);
-            a->y[at][i] = r[at].y0 + dy * (1 + node[i]);
-        }
-    }
+    nodes(r, n, a);
     w->f(w->context, n, (const double(*)[ORDER])a->x,
          (const double(*)[ORDER])a->y, a->value);
     *w->budget -= (long)(n * NODES);
-    for (size_t at = 0; at < n; at++) {
-        const double area = (r[at].x1 - r[at].x0) * (r[at].y1 - r[at].y0) / 4;
-        found[at].height = 0;
-        for (int part = 0; part < w->parts; part++) {
-            const double *f = a->value + ((size_t)part * n + at) * NODES;
-            double sum = 0;
-            for (int i = 0; i < ORDER; i++) {
-                double row = 0;
-                for (int k = 0; k < ORDER; k++, f++) {
-                    row += node_weight[k] * *f;
-                    found[at].height = fmax(found[at].height, fabs(*f));
-                }
-                sum += node_weight[i] * row;
-            }
-            found[at].value[part] = area * sum;
-        }
-    }
+    weigh(a->value, r, n, w->parts, found);
 }
 
 /* Whether the nodes have met what the hints say is there. */
