@@ -67,8 +67,10 @@ HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
 
 # Loops over lanes, which see more of the registers with -O3.
 ifeq ($(config),release)
-LANED    := $(patsubst %,$(B)/obj/bsdf/%.o,diffuse facets roughconductor \
-              roughdielectric)
+LANED    := $(patsubst %,$(B)/obj/%.o,bsdf/diffuse bsdf/facets bsdf/rng \
+              bsdf/roughconductor bsdf/roughdielectric validate/partition \
+              tests/bench validate/partition validate/quadrature \
+              validate/sphere validate/survey)
 $(LANED): FLAGS += -O3
 endif
 
@@ -125,7 +127,7 @@ $(B)/bin/tests/%: $(B)/obj/tests/%.o $(call objects,$(HELPERS)) $(LIBRARIES)
 define NEEDS
 library stdio.h            -lm                  libc6-dev
 library gsl/gsl_cdf.h      -lgsl,-lgslcblas,-lm libgsl-dev
-library Random123/philox.h -lm                  librandom123-dev
+library Random123/threefry.h -lm                librandom123-dev
 library yaml.h             -lyaml               libyaml-dev
 library jansson.h          -ljansson            libjansson-dev
 library libxml/xmlwriter.h $(XML2),-lxml2 libxml2-dev

@@ -461,15 +461,73 @@ void bsdf_pdf_many(const struct bsdf *b, size_t n, struct dirs wo,
         pdf[i] = bsdf_pdf(b, dirs_at(wo, i), dirs_at(wi, i));
 }
 
+struct bsdf_samples bsdf_samples_from(const struct bsdf_samples *s, size_t i)
+{
+    struct bsdf_samples from = { s->x + i,   s->y + i, s->z + i,
+                                 s->pdf + i, { NULL }, s->delta + i };
+    for (int b = 0; b < BANDS_MAX; b++)
+        from.weight[b] = s->weight[b] ? s->weight[b] + i : NULL;
+    return from;
+}
+
+struct bsdf_sample bsdf_samples_at(const struct bsdf_samples *s, size_t i)
+{
+    struct bsdf_sample a = {
+        { s->x[i], s->y[i], s->z[i] }, s->pdf[i], { { 0 } }, s->delta[i]
+    };
+    for (int b = 0; b < BANDS_MAX; b++)
+        a.weight.band[b] = s->weight[b] ? s->weight[b][i] : 0;
+    return a;
+}
+
+void bsdf_samples_put(const struct bsdf_samples *s, size_t i,
+                      const struct bsdf_sample *a)
+{
+    s->x[i] = a->wi.x, s->y[i] = a->wi.y, s->z[i] = a->wi.z;
+    s->pdf[i] = a->pdf;
+    s->delta[i] = a->delta;
+    for (int b = 0; b < BANDS_MAX; b++)
+        if (s->weight[b])
+            s->weight[b][i] = a->weight.band[b];
+}
+
+void bsdf_sample_into(const struct bsdf *b, size_t n, struct dirs wo,
+                      struct dirs u, struct bsdf_samples out)
+{
+    for (int band = b->bands.count; band < BANDS_MAX; band++)
+        out.weight[band] = NULL;
+    if (b->type->sample_many) {
+        b->type->sample_many(b->state, n, wo, u, out);
+        return;
+    }
+    for (size_t i = 0; i < n; i++) {
+        const struct bsdf_sample a =
+            b->type->sample(b->state, dirs_at(wo, i), dirs_at(u, i));
+        bsdf_samples_put(&out, i, &a);
+    }
+}
+
 void bsdf_sample_many(const struct bsdf *b, size_t n, struct dirs wo,
                       struct dirs u, struct bsdf_sample *sample)
 {
-    if (b->type->sample_many) {
-        b->type->sample_many(b->state, n, wo, u, sample);
-        return;
+    /* As many as another program wants at a time, of what is computed here as
+     * many as stay in the first cache. */
+    enum { BLOCK = 4096 };
+    const size_t most = b->type->trouble ? BLOCK : 256;
+    struct {
+        double number[4 + BANDS_MAX][BLOCK];
+        bool delta[BLOCK];
+    } room;
+    double(*const a)[BLOCK] = room.number;
+    struct bsdf_samples out = { a[0], a[1], a[2], a[3], { NULL }, room.delta };
+    for (int band = 0; band < b->bands.count; band++)
+        out.weight[band] = a[4 + band];
+    for (size_t at = 0, k; at < n; at += k) {
+        k = n - at < most ? n - at : most;
+        bsdf_sample_into(b, k, dirs_from(wo, at), dirs_from(u, at), out);
+        for (size_t i = 0; i < k; i++)
+            sample[at + i] = bsdf_samples_at(&out, i);
     }
-    for (size_t i = 0; i < n; i++)
-        sample[i] = b->type->sample(b->state, dirs_at(wo, i), dirs_at(u, i));
 }
 
 bool bsdf_has_trouble(const struct bsdf *b)

@@ -31,6 +31,14 @@ struct bsdf_sample {
     bool delta;             /* one direction, where eval and pdf are 0 */
 };
 
+/** Where many samples go, an array a number; the caller's. */
+struct bsdf_samples {
+    double *x, *y, *z, *pdf;   /* wi, and its pdf */
+    double *weight[BANDS_MAX]; /* NULL for bands that are not asked for; where
+                                  that is all, a model has less to compute */
+    bool *delta;
+};
+
 /** One setting of a model: the table parses specs, checks ranges, prints help.
  * A value that is neither given nor has a default is NaN (number, spectrum),
  * NULL (string, nested) or -1 (choice, flag). */
@@ -108,7 +116,7 @@ struct bsdf_type {
     void (*pdf_many)(const void *state, size_t n, struct dirs wo,
                      struct dirs wi, double *pdf);
     void (*sample_many)(const void *state, size_t n, struct dirs wo,
-                        struct dirs u, struct bsdf_sample *sample);
+                        struct dirs u, struct bsdf_samples out);
 };
 
 /** The models that specs can name; the last is NULL.  See types.c. */
@@ -155,6 +163,18 @@ void bsdf_pdf_many(const struct bsdf *b, size_t n, struct dirs wo,
                    struct dirs wi, double *pdf);
 void bsdf_sample_many(const struct bsdf *b, size_t n, struct dirs wo,
                       struct dirs u, struct bsdf_sample *sample);
+
+/** The same into arrays, which is faster. */
+void bsdf_sample_into(const struct bsdf *b, size_t n, struct dirs wo,
+                      struct dirs u, struct bsdf_samples out);
+
+/** One of the arrays' samples; bands that were not asked for are 0. */
+struct bsdf_sample bsdf_samples_at(const struct bsdf_samples *s, size_t i);
+void bsdf_samples_put(const struct bsdf_samples *s, size_t i,
+                      const struct bsdf_sample *a);
+
+/** The same arrays from one of the samples on. */
+struct bsdf_samples bsdf_samples_from(const struct bsdf_samples *s, size_t i);
 
 /** Whether the model can be in trouble, and the first that it was in during
  * calls of this thread since it was asked last. */

@@ -91,33 +91,32 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
                                  .weight = m->reflectance };
 }
 
-LANES static void direction_lanes(size_t n, struct dirs u, double *x, double *y,
-                                  double *z)
+LANES static void sample_lanes(const struct diffuse *state, size_t n,
+                               struct dirs wo, struct dirs u,
+                               const struct bsdf_samples *out)
 {
+    const struct diffuse m = *state;
+    const struct bsdf_samples s = *out;
     LANES_LOOP
     for (size_t i = 0; i < n; i++) {
         const struct vec3 w = direction(dirs_at(u, i));
-        x[i] = w.x, y[i] = w.y, z[i] = w.z;
+        const bool above = wo.z[i] > 0;
+        s.x[i] = above ? w.x : 0;
+        s.y[i] = above ? w.y : 0;
+        s.z[i] = above ? w.z : 0;
+        s.pdf[i] = density(wo.z[i], w.z);
     }
+    for (int b = 0; b < BANDS_MAX && s.weight[b]; b++)
+        LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        s.weight[b][i] = wo.z[i] > 0 ? m.reflectance.band[b] : 0;
 }
 
 static void sample_many(const void *state, size_t n, struct dirs wo,
-                        struct dirs u, struct bsdf_sample *s)
+                        struct dirs u, struct bsdf_samples out)
 {
-    const struct diffuse m = *(const struct diffuse *)state;
-    double x[LANES_MAX], y[LANES_MAX], z[LANES_MAX];
-    for (size_t at = 0, k; at < n; at += k) {
-        k = n - at < LANES_MAX ? n - at : LANES_MAX;
-        direction_lanes(k, dirs_from(u, at), x, y, z);
-        for (size_t i = 0; i < k; i++) {
-            const double cos_o = wo.z[at + i];
-            s[at + i] = cos_o > 0
-                            ? (struct bsdf_sample){ .wi = { x[i], y[i], z[i] },
-                                                    .pdf = density(cos_o, z[i]),
-                                                    .weight = m.reflectance }
-                            : (struct bsdf_sample){ 0 };
-        }
-    }
+    sample_lanes(state, n, wo, u, &out);
+    memset(out.delta, 0, n * sizeof *out.delta);
 }
 
 const struct bsdf_type type_diffuse = {

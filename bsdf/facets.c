@@ -197,9 +197,12 @@ void facets_visible_many(struct facets f, size_t n, struct dirs w,
         ggx_views(f, views, w, &v);
     else
         beckmann_views(f, views, w, &v);
-    if (one)
-        for (size_t k = 0; k < sizeof v / sizeof v.x; k++)
+    if (one) {
+        const size_t ggx = offsetof(struct views, ggx) + sizeof v.ggx;
+        const size_t size = f.family == NDF_GGX ? ggx : sizeof v;
+        for (size_t k = 0; k < size / sizeof v.x; k++)
             fill(n, (double *)&v + k * LANES_MAX);
+    }
     if (f.family == NDF_GGX)
         ggx_lanes(f, n, &v, u, mx, my, mz);
     else

@@ -43,20 +43,41 @@ INLINE struct vec3 facets_half(struct vec3 wo, struct vec3 wi, double *h2)
     return h;
 }
 
-/** D of the normal along m, which may have any length and m.z > 0; m2 = m.m. */
-INLINE double facets_d(struct facets f, struct vec3 m, double m2)
+/** What D of the normal along m is made of, which may have any length and
+ * m.z > 0; m2 = m.m. */
+struct facets_part {
+    double p22;     /* per projected area of the slope */
+    double t;       /* 1 / cos^2, or over 1 + slope^2 with GGX */
+    double inverse; /* t / m2 */
+};
+
+INLINE struct facets_part facets_part(struct facets f, struct vec3 m, double m2)
 {
     const double x = m.x * f.per_u, y = m.y * f.per_v;
     const double r2 = x * x + y * y, per_area = f.per_u * f.per_v;
     const double z2 = fm_max(m.z * m.z, 1e-300);
-    if (f.family == NDF_GGX) {
-        const double t = m2 / (z2 + r2); /* (1 + tan^2) / (1 + slope^2) */
-        return t * t * (per_area / PI);
+    if (f.family == NDF_GGX) { /* (1 + tan^2) / (1 + slope^2) */
+        const double inverse = 1 / (z2 + r2);
+        return (struct facets_part){ per_area / PI, m2 * inverse, inverse };
     }
     /* Where P22 is 0, 1 / cos^4 may be infinite. */
     const double inverse = 1 / z2, slope2 = r2 * inverse;
-    const double t = slope2 > 708 ? 0 : m2 * inverse;
-    return beckmann_p22(slope2) * (t * t * per_area);
+    const double finite = slope2 > 708 ? 0 : inverse;
+    return (struct facets_part){ beckmann_p22(slope2) * per_area, m2 * finite,
+                                 finite };
+}
+
+INLINE double facets_d(struct facets f, struct vec3 m, double m2)
+{
+    const struct facets_part d = facets_part(f, m, m2);
+    return d.p22 * (d.t * d.t);
+}
+
+/** D(m) m.z / m2. */
+INLINE double facets_d_z(struct facets f, struct vec3 m, double m2)
+{
+    const struct facets_part d = facets_part(f, m, m2);
+    return d.p22 * (d.t * (d.inverse * m.z));
 }
 
 /** How long the horizontal part of w is where the roughness is 1, squared. */

@@ -127,12 +127,9 @@ static const double fm_cos_c[] = {
     0x1.5555555555555p-5,   -0x1.6c16c16c16966p-10, 0x1.a01a019f4e7d9p-16,
     -0x1.27e4fa179895fp-22, 0x1.1eeb68a508535p-29,  -0x1.907d724680d4ep-37,
 };
-/** Sine and cosine of x turns, x in [0, 1]: 2 units, and exact at quarters. */
-FM void fm_sincos_turns(double x, double *sine, double *cosine)
+/* Sine and cosine of t + q pi / 2, |t| <= pi / 4, from q + 0x1.8p52. */
+FM void fm_sincos_of(double t, double shifted, double *sine, double *cosine)
 {
-    const double shifter = 0x1.8p52;
-    const double shifted = 4 * x + shifter;
-    const double t = (4 * x - (shifted - shifter)) * (PI / 2);
     const double z = t * t, z2 = z * z;
     const double s =
         t + t * (z * (fm_poly4(z, fm_sin_c) +
@@ -145,6 +142,28 @@ FM void fm_sincos_turns(double x, double *sine, double *cosine)
     const uint64_t bs = fm_bits(s), bc = fm_bits(c);
     *sine = fm_double(((bs & ~odd) | (bc & odd)) ^ (quarter & 2) << 62);
     *cosine = fm_double(((bc & ~odd) | (bs & odd)) ^ ((quarter + 1) & 2) << 62);
+}
+
+/** Sine and cosine of x turns, x in [0, 1]: 2 units, and exact at quarters. */
+FM void fm_sincos_turns(double x, double *sine, double *cosine)
+{
+    const double shifter = 0x1.8p52;
+    const double shifted = 4 * x + shifter;
+    const double t = (4 * x - (shifted - shifter)) * (PI / 2);
+    fm_sincos_of(t, shifted, sine, cosine);
+}
+
+/** Sine and cosine of an angle in [-16, 16] rad: 2 units, and 2^-80 where that
+ * is more. */
+FM void fm_sincos(double x, double *sine, double *cosine)
+{
+    const double shifter = 0x1.8p52;
+    const double shifted = x * (2 / PI) + shifter;
+    const double q = shifted - shifter;
+    /* pi / 2 in two parts, the first of 33 bits, so that q times it is exact.
+     */
+    const double t = (x - q * 0x1.921fb544p0) - q * 0x1.0b4611a626331p-34;
+    fm_sincos_of(t, shifted, sine, cosine);
 }
 
 static const double fm_atan_c[] = {

@@ -1,7 +1,10 @@
 /* rng.h - random numbers that depend on (seed, stream, index) only
  *
- * Philox 4x64-10 of Random123: the number of a sample is a function of its
- * index, so neither the order nor the number of threads matters.
+ * Threefry 4x64-20 of Random123: the number of a sample is a function of its
+ * index, so neither the order nor the number of threads matters.  The seed and
+ * the stream are its key, the index its counter, of 64 bits each, so no two of
+ * (seed, stream, index) share their numbers.  It adds, turns and mixes words of
+ * 64 bits, which vectors do as well; Philox multiplies them, which they cannot.
  *
  * J. Salmon et al., Parallel random numbers: as easy as 1, 2, 3, SC11, 2011.
  */

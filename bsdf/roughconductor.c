@@ -102,38 +102,32 @@ INLINE double shape(const struct roughconductor *m, struct facets facets,
     return seen ? f : 0;
 }
 
-/* From g1_per_cos, which is asked for visible normals alone. */
-INLINE double density(const struct roughconductor *m, struct facets facets,
-                      struct vec3 wo, struct vec3 wi, double visible)
+/* Of visible normals from g1_per_cos, or of all. */
+INLINE double density(struct facets facets, bool visible, struct vec3 wo,
+                      struct vec3 wi, double g1)
 {
     double h2;
     const struct vec3 h = facets_half(wo, wi, &h2);
-    const double d = facets_d(facets, h, h2);
-    const double p = m->sample_visible ? d * visible : d * h.z / (2 * h2);
+    const double p =
+        visible ? facets_d(facets, h, h2) * g1 : facets_d_z(facets, h, h2) / 2;
     return above(wo, wi) ? p : 0;
 }
 
-/* A sample before F. */
+/* A sample without its weight, by a facet with the normal's z. */
 struct draw {
     struct vec3 wi;
-    double pdf, shape, cos_d; /* weight = F(cos_d) shape */
+    double pdf, cos_d, z;
 };
 
 /* By a facet with its normal along h, of any length. */
-INLINE struct draw draw_at(const struct roughconductor *m, struct facets facets,
-                           struct vec3 wo, struct vec3 h, double lo,
-                           double visible)
+INLINE struct draw draw_at(struct facets facets, bool visible, struct vec3 wo,
+                           struct vec3 h, double g1)
 {
     const double length = 1 / vec3_length(h);
     const struct vec3 n = vec3_scale(length, h);
-    const double cos_d = vec3_dot(wo, n);
     const struct vec3 wi = vec3_unit_again(vec3_reflect(wo, n));
-    const double p = density(m, facets, wo, wi, visible);
-    const double per_g = per_g2(m, lo, facets_lambda(facets, wi));
-    /* f cos_i / pdf, with D divided out by hand. */
-    const double weight =
-        m->sample_visible ? (1 + lo) / per_g : cos_d / (wo.z * n.z * per_g);
-    return (struct draw){ wi, p, weight, cos_d };
+    return (struct draw){ wi, density(facets, visible, wo, wi, g1),
+                          vec3_dot(wo, n), n.z };
 }
 
 /* All 0 where a draw is refused; p is 0 unless both are above. */
@@ -143,9 +137,20 @@ INLINE struct draw draw_kept(struct draw s)
     return (struct draw){
         .wi = { good ? s.wi.x : 0, good ? s.wi.y : 0, good ? s.wi.z : 0 },
         .pdf = good ? s.pdf : 0,
-        .shape = good ? s.shape : 0,
         .cos_d = good ? fm_min(s.cos_d, 1) : 1,
+        .z = s.z,
     };
+}
+
+/* f cos_i / (F pdf), with D divided out by hand, of a draw that was kept; 0 of
+ * one that was not. */
+INLINE double draw_weight(const struct roughconductor *m, struct facets facets,
+                          struct vec3 wo, struct draw s, double lo)
+{
+    const double per_g = per_g2(m, lo, facets_lambda(facets, s.wi));
+    const double weight =
+        m->sample_visible ? (1 + lo) / per_g : s.cos_d / (wo.z * s.z * per_g);
+    return s.pdf > 0 ? weight : 0;
 }
 
 /* The model's F in one band, with its factor, times a common one. */
@@ -186,7 +191,7 @@ static double pdf(const void *state, struct vec3 wo, struct vec3 wi)
     if (!above(wo, wi))
         return 0;
     const double lo = m->sample_visible ? facets_lambda(m->facets, wo) : 0;
-    return density(m, m->facets, wo, wi, g1_per_cos(wo, lo));
+    return density(m->facets, m->sample_visible, wo, wi, g1_per_cos(wo, lo));
 }
 
 static struct bsdf_sample sample(const void *state, struct vec3 wo,
@@ -199,12 +204,12 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
                               ? facets_visible(m->facets, wo, u.x, u.y)
                               : facets_all(m->facets, u.x, u.y);
     const double lo = facets_lambda(m->facets, wo);
-    const struct draw s =
-        draw_kept(draw_at(m, m->facets, wo, h, lo, g1_per_cos(wo, lo)));
+    const struct draw s = draw_kept(
+        draw_at(m->facets, m->sample_visible, wo, h, g1_per_cos(wo, lo)));
     return (struct bsdf_sample){
         .wi = s.wi,
         .pdf = s.pdf,
-        .weight = tinted_all(m, s.cos_d, s.shape),
+        .weight = tinted_all(m, s.cos_d, draw_weight(m, m->facets, wo, s, lo)),
     };
 }
 
@@ -212,18 +217,16 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
  */
 
 struct lanes {
-    double lo[LANES_MAX], visible[LANES_MAX]; /* of wo: lambda, g1_per_cos */
+    double lo[LANES_MAX], g1[LANES_MAX]; /* of wo: lambda, g1_per_cos */
     double cos_d[LANES_MAX], shape[LANES_MAX];
     double hx[LANES_MAX], hy[LANES_MAX], hz[LANES_MAX];
-    double x[LANES_MAX], y[LANES_MAX], z[LANES_MAX], pdf[LANES_MAX];
-    double band[BANDS_MAX][LANES_MAX];
 };
 
 LANES static void g1_lanes(size_t n, struct dirs wo, struct lanes *l)
 {
     LANES_LOOP
     for (size_t i = 0; i < n; i++)
-        l->visible[i] = g1_per_cos(dirs_at(wo, i), l->lo[i]);
+        l->g1[i] = g1_per_cos(dirs_at(wo, i), l->lo[i]);
 }
 
 /* What depends on wo alone, once if there is but one. */
@@ -235,7 +238,7 @@ static void look(const struct roughconductor *m, size_t n, struct dirs wo,
     g1_lanes(one ? 1 : n, wo, l);
     if (one) {
         facets_fill(n, l->lo);
-        facets_fill(n, l->visible);
+        facets_fill(n, l->g1);
     }
 }
 
@@ -258,103 +261,147 @@ LANES static void shape_lanes(const struct roughconductor *m, size_t n,
         shape_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, wi, l);
 }
 
-INLINE void density_loop(const struct roughconductor *m, struct facets facets,
-                         size_t n, struct dirs wo, struct dirs wi,
-                         const struct lanes *l, double *p)
+INLINE void density_loop(struct facets facets, bool visible, size_t n,
+                         struct dirs wo, struct dirs wi, const struct lanes *l,
+                         double *p)
 {
-    const struct roughconductor copy = *m;
     LANES_LOOP
     for (size_t i = 0; i < n; i++)
-        p[i] = density(&copy, facets, dirs_at(wo, i), dirs_at(wi, i),
-                       l->visible[i]);
+        p[i] =
+            density(facets, visible, dirs_at(wo, i), dirs_at(wi, i), l->g1[i]);
 }
 
-LANES static void density_lanes(const struct roughconductor *m, size_t n,
-                                struct dirs wo, struct dirs wi,
-                                const struct lanes *l, double *p)
+/* Each of the two a loop without a branch on the family. */
+LANES static void density_visible(struct facets f, size_t n, struct dirs wo,
+                                  struct dirs wi, const struct lanes *l,
+                                  double *p)
 {
-    if (m->facets.family == NDF_GGX)
-        density_loop(m, facets_as(m->facets, NDF_GGX), n, wo, wi, l, p);
+    if (f.family == NDF_GGX)
+        density_loop(facets_as(f, NDF_GGX), true, n, wo, wi, l, p);
     else
-        density_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, wi, l, p);
+        density_loop(facets_as(f, NDF_BECKMANN), true, n, wo, wi, l, p);
 }
 
-INLINE void draw_put(struct lanes *l, size_t i, struct draw s)
+LANES static void density_all(struct facets f, size_t n, struct dirs wo,
+                              struct dirs wi, const struct lanes *l, double *p)
 {
-    l->x[i] = s.wi.x, l->y[i] = s.wi.y, l->z[i] = s.wi.z;
-    l->pdf[i] = s.pdf, l->shape[i] = s.shape, l->cos_d[i] = s.cos_d;
+    if (f.family == NDF_GGX)
+        density_loop(facets_as(f, NDF_GGX), false, n, wo, wi, l, p);
+    else
+        density_loop(facets_as(f, NDF_BECKMANN), false, n, wo, wi, l, p);
 }
 
-INLINE void draw_loop(const struct roughconductor *m, struct facets facets,
-                      size_t n, struct dirs wo, struct lanes *l)
+INLINE struct draw draw_of(const struct lanes *l, const struct bsdf_samples *to,
+                           size_t i)
 {
+    return (struct draw){
+        { to->x[i], to->y[i], to->z[i] }, to->pdf[i], l->cos_d[i], l->hz[i]
+    };
+}
+
+INLINE void draw_put(struct lanes *l, const struct bsdf_samples *to, size_t i,
+                     struct draw s)
+{
+    to->x[i] = s.wi.x, to->y[i] = s.wi.y, to->z[i] = s.wi.z;
+    to->pdf[i] = s.pdf;
+    l->cos_d[i] = s.cos_d, l->hz[i] = s.z;
+}
+
+INLINE void draw_loop(struct facets facets, bool visible, size_t n,
+                      struct dirs wo, struct lanes *l,
+                      const struct bsdf_samples *out)
+{
+    const struct bsdf_samples to = *out;
     LANES_LOOP
     for (size_t i = 0; i < n; i++) {
         const struct vec3 h = { l->hx[i], l->hy[i], l->hz[i] };
-        draw_put(
-            l, i,
-            draw_at(m, facets, dirs_at(wo, i), h, l->lo[i], l->visible[i]));
+        draw_put(l, &to, i,
+                 draw_at(facets, visible, dirs_at(wo, i), h, l->g1[i]));
     }
     LANES_LOOP
     for (size_t i = 0; i < n; i++)
-        draw_put(l, i,
-                 draw_kept((struct draw){ { l->x[i], l->y[i], l->z[i] },
-                                          l->pdf[i],
-                                          l->shape[i],
-                                          l->cos_d[i] }));
+        draw_put(l, &to, i, draw_kept(draw_of(l, &to, i)));
 }
 
-LANES static void draw_lanes(const struct roughconductor *m, size_t n,
-                             struct dirs wo, struct lanes *l)
+LANES static void draw_visible(struct facets f, size_t n, struct dirs wo,
+                               struct lanes *l, const struct bsdf_samples *to)
+{
+    if (f.family == NDF_GGX)
+        draw_loop(facets_as(f, NDF_GGX), true, n, wo, l, to);
+    else
+        draw_loop(facets_as(f, NDF_BECKMANN), true, n, wo, l, to);
+}
+
+LANES static void draw_all(struct facets f, size_t n, struct dirs wo,
+                           struct lanes *l, const struct bsdf_samples *to)
+{
+    if (f.family == NDF_GGX)
+        draw_loop(facets_as(f, NDF_GGX), false, n, wo, l, to);
+    else
+        draw_loop(facets_as(f, NDF_BECKMANN), false, n, wo, l, to);
+}
+
+INLINE void weight_loop(const struct roughconductor *m, struct facets facets,
+                        size_t n, struct dirs wo, struct lanes *l,
+                        const struct bsdf_samples *drawn)
+{
+    const struct bsdf_samples s = *drawn;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        l->shape[i] =
+            draw_weight(m, facets, dirs_at(wo, i), draw_of(l, &s, i), l->lo[i]);
+}
+
+LANES static void weight_lanes(const struct roughconductor *m, size_t n,
+                               struct dirs wo, struct lanes *l,
+                               const struct bsdf_samples *drawn)
 {
     if (m->facets.family == NDF_GGX)
-        draw_loop(m, facets_as(m->facets, NDF_GGX), n, wo, l);
+        weight_loop(m, facets_as(m->facets, NDF_GGX), n, wo, l, drawn);
     else
-        draw_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, l);
+        weight_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, l, drawn);
 }
 
+/* band[b] may be NULL. */
 INLINE void tint_loop(const struct roughconductor *m, int fresnel, size_t n,
-                      struct lanes *l)
+                      const struct lanes *l, double *const *band)
 {
-    for (int b = 0; b < m->bands; b++)
+    for (int b = 0; b < m->bands; b++) {
+        double *const to = band[b];
         LANES_LOOP
-    for (size_t i = 0; i < n; i++)
-        l->band[b][i] = tinted(m, fresnel, b, l->cos_d[i], l->shape[i]);
+        for (size_t i = 0; i < (to ? n : 0); i++)
+            to[i] = tinted(m, fresnel, b, l->cos_d[i], l->shape[i]);
+    }
 }
 
 LANES static void tint_lanes(const struct roughconductor *m, size_t n,
-                             struct lanes *l)
+                             const struct lanes *l, double *const *band)
 {
     if (m->fresnel == EXACT)
-        tint_loop(m, EXACT, n, l);
+        tint_loop(m, EXACT, n, l, band);
     else if (m->fresnel == APPROX)
-        tint_loop(m, APPROX, n, l);
+        tint_loop(m, APPROX, n, l, band);
     else
-        tint_loop(m, SCHLICK, n, l);
-    for (int b = m->bands; b < BANDS_MAX; b++)
-        for (size_t i = 0; i < n; i++)
-            l->band[b][i] = 0;
-}
-
-static struct spectrum band_at(const struct lanes *l, size_t i)
-{
-    return (struct spectrum){ { l->band[0][i], l->band[1][i], l->band[2][i],
-                                l->band[3][i] } };
+        tint_loop(m, SCHLICK, n, l, band);
 }
 
 static void eval_many(const void *state, size_t n, struct dirs wo,
                       struct dirs wi, struct spectrum *f)
 {
     const struct roughconductor *m = state;
+    double band[BANDS_MAX][LANES_MAX] = { { 0 } };
     struct lanes l;
     for (size_t at = 0, k; at < n; at += k) {
         const struct dirs o = dirs_from(wo, at), i = dirs_from(wi, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
         look(m, k, o, &l);
         shape_lanes(m, k, o, i, &l);
-        tint_lanes(m, k, &l);
+        tint_lanes(m, k, &l,
+                   (double *const[]){ band[0], band[1], band[2], band[3] });
         for (size_t lane = 0; lane < k; lane++)
-            f[at + lane] = band_at(&l, lane);
+            f[at + lane] =
+                (struct spectrum){ { band[0][lane], band[1][lane],
+                                     band[2][lane], band[3][lane] } };
     }
 }
 
@@ -367,12 +414,15 @@ static void pdf_many(const void *state, size_t n, struct dirs wo,
         const struct dirs o = dirs_from(wo, at), i = dirs_from(wi, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
         look(m, k, o, &l);
-        density_lanes(m, k, o, i, &l, p + at);
+        if (m->sample_visible)
+            density_visible(m->facets, k, o, i, &l, p + at);
+        else
+            density_all(m->facets, k, o, i, &l, p + at);
     }
 }
 
 static void sample_many(const void *state, size_t n, struct dirs wo,
-                        struct dirs u, struct bsdf_sample *s)
+                        struct dirs u, struct bsdf_samples out)
 {
     const struct roughconductor *m = state;
     struct lanes l;
@@ -380,18 +430,19 @@ static void sample_many(const void *state, size_t n, struct dirs wo,
         const struct dirs o = dirs_from(wo, at), v = dirs_from(u, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
         look(m, k, o, &l);
-        if (m->sample_visible)
+        const struct bsdf_samples to = bsdf_samples_from(&out, at);
+        if (m->sample_visible) {
             facets_visible_many(m->facets, k, o, v, l.hx, l.hy, l.hz);
-        else
+            draw_visible(m->facets, k, o, &l, &to);
+        } else {
             facets_all_many(m->facets, k, v, l.hx, l.hy, l.hz);
-        draw_lanes(m, k, o, &l);
-        tint_lanes(m, k, &l);
-        for (size_t i = 0; i < k; i++)
-            s[at + i] = (struct bsdf_sample){
-                .wi = { l.x[i], l.y[i], l.z[i] },
-                .pdf = l.pdf[i],
-                .weight = band_at(&l, i),
-            };
+            draw_all(m->facets, k, o, &l, &to);
+        }
+        if (to.weight[0]) {
+            weight_lanes(m, k, o, &l, &to);
+            tint_lanes(m, k, &l, to.weight);
+        }
+        memset(to.delta, 0, k * sizeof *to.delta);
     }
 }
 

@@ -295,7 +295,7 @@ static void pdf_many(const void *state, size_t n, struct dirs wo,
 }
 
 static void sample_many(const void *state, size_t n, struct dirs wo,
-                        struct dirs u, struct bsdf_sample *s)
+                        struct dirs u, struct bsdf_samples out)
 {
     const struct roughdielectric *m = state;
     struct lanes l;
@@ -312,10 +312,12 @@ static void sample_many(const void *state, size_t n, struct dirs wo,
                                 v, l.hx, l.hy, l.hz);
         else
             facets_all_many(m->facets, k, v, l.hx, l.hy, l.hz);
-        for (size_t i = 0; i < k; i++)
-            s[at + i] = sample_of(m, dirs_at(o, i),
-                                  (struct vec3){ l.hx[i], l.hy[i], l.hz[i] },
-                                  v.z[i], l.lo[i]);
+        for (size_t i = 0; i < k; i++) {
+            const struct bsdf_sample s = sample_of(
+                m, dirs_at(o, i), (struct vec3){ l.hx[i], l.hy[i], l.hz[i] },
+                v.z[i], l.lo[i]);
+            bsdf_samples_put(&out, at + i, &s);
+        }
     }
 }
 

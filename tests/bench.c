@@ -143,14 +143,30 @@ static double sample_one(const struct bsdf *b, const struct inputs *in)
     return sum;
 }
 
+/* Room for a batch of samples. */
+struct drawn {
+    double number[4 + BANDS_MAX][BATCH];
+    bool delta[BATCH];
+};
+
+static struct bsdf_samples into(struct drawn *d, int bands_asked)
+{
+    struct bsdf_samples s = { d->number[0], d->number[1], d->number[2],
+                              d->number[3], { NULL },     d->delta };
+    for (int i = 0; i < bands_asked; i++)
+        s.weight[i] = d->number[4 + i];
+    return s;
+}
+
 static double sample_many(const struct bsdf *b, const struct inputs *in)
 {
-    struct bsdf_sample a[BATCH];
+    struct drawn d;
     double sum = 0;
     for (size_t at = 0; at < DIRECTIONS; at += BATCH) {
-        bsdf_sample_many(b, BATCH, from(in->wo, at), from(in->u, at), a);
+        const struct bsdf_samples s = into(&d, bands.count);
+        bsdf_sample_into(b, BATCH, from(in->wo, at), from(in->u, at), s);
         for (size_t i = 0; i < BATCH; i++)
-            sum += a[i].pdf;
+            sum += s.pdf[i];
     }
     return sum;
 }
@@ -456,7 +472,7 @@ struct grid_test {
 };
 
 struct grid_tests {
-    struct grid_test usual, ours;
+    struct grid_test usual, ours, weighed;
 };
 
 static struct grid_test grid_usual(int kind, double theta)
@@ -498,10 +514,21 @@ LANES static void cells(const double *x, const double *y, const double *z,
     }
 }
 
-static double grid_sample(const struct bsdf *b, struct vec3 wo, long *counts)
+LANES static double total(size_t n, const double *x)
 {
-    static double u[3][BATCH], o[3][BATCH], w[3][BATCH], pdf[BATCH];
-    struct bsdf_sample s[BATCH];
+    double sum = 0;
+    _Pragma("omp simd reduction(+:sum)") for (size_t i = 0; i < n; i++) sum +=
+        x[i];
+    return sum;
+}
+
+/* The weights are summed where they are asked for, else 0 is returned. */
+static double grid_sample(const struct bsdf *b, struct vec3 wo, bool weights,
+                          long *counts)
+{
+    static double u[3][BATCH], o[3][BATCH];
+    static struct drawn d;
+    const struct bsdf_samples s = into(&d, weights ? bands.count : 0);
     int cell[BATCH];
     double sum = 0;
     for (int i = 0; i < BATCH; i++)
@@ -510,19 +537,15 @@ static double grid_sample(const struct bsdf *b, struct vec3 wo, long *counts)
         const size_t n = at + BATCH > GRID_SAMPLES ? (size_t)(GRID_SAMPLES - at)
                                                    : (size_t)BATCH;
         rng_uniform_many((struct rng){ 1, 9 }, at, BATCH, u[0], u[1], u[2]);
-        bsdf_sample_many(b, n, (struct dirs){ o[0], o[1], o[2] },
+        bsdf_sample_into(b, n, (struct dirs){ o[0], o[1], o[2] },
                          (struct dirs){ u[0], u[1], u[2] }, s);
-        for (size_t i = 0; i < n; i++) {
-            w[0][i] = s[i].wi.x, w[1][i] = s[i].wi.y, w[2][i] = s[i].wi.z;
-            pdf[i] = s[i].pdf;
-            sum +=
-                s[i].weight.band[0] + s[i].weight.band[1] + s[i].weight.band[2];
-        }
-        cells(w[0], w[1], w[2], pdf, cell);
+        for (int k = 0; k < BANDS_MAX && s.weight[k]; k++)
+            sum += total(n, s.weight[k]);
+        cells(s.x, s.y, s.z, s.pdf, cell);
         for (size_t i = 0; i < n; i++)
             counts[cell[i]]++;
     }
-    return sum / (3.0 * GRID_SAMPLES);
+    return sum / ((double)bands.count * GRID_SAMPLES);
 }
 
 /* Six Gauss-Legendre points each way in every bin; strip by strip, as the
@@ -577,14 +600,14 @@ static double grid_error(const struct bsdf *b, struct vec3 wo,
 }
 
 static struct grid_test grid_ours(const struct bsdf *b, struct vec3 wo,
-                                  bool check)
+                                  bool weights, bool check)
 {
     static long counts[CELLS + 1];
     static double mass[CELLS];
     struct grid_test t;
     memset(counts, 0, sizeof counts);
     const double start = seconds();
-    t.weight = grid_sample(b, wo, counts);
+    t.weight = grid_sample(b, wo, weights, counts);
     const double middle = seconds();
     grid_integrate(b, wo, mass);
     t.statistic =
@@ -595,22 +618,28 @@ static struct grid_test grid_ours(const struct bsdf *b, struct vec3 wo,
     return t;
 }
 
-/* Both in turns; seen from 45 degrees. */
+/* In turns; seen from 45 degrees. */
 static struct grid_tests time_grid(int kind)
 {
-    double time[4][GRID_RUNS];
+    double sampling[3][GRID_RUNS], integrating[3][GRID_RUNS];
     struct grid_tests t;
+    struct grid_test *const each[] = { &t.usual, &t.ours, &t.weighed };
     struct bsdf *b = make(grids[kind].spec);
+    const struct vec3 wo = dir_from_degrees(45, 0);
     for (int run = 0; run < GRID_RUNS; run++) {
+        const bool last = run == GRID_RUNS - 1;
         t.usual = grid_usual(kind, PI / 4);
-        t.ours = grid_ours(b, dir_from_degrees(45, 0), run == GRID_RUNS - 1);
-        time[0][run] = t.usual.sampling, time[1][run] = t.usual.integrating;
-        time[2][run] = t.ours.sampling, time[3][run] = t.ours.integrating;
+        t.ours = grid_ours(b, wo, false, last);
+        t.weighed = grid_ours(b, wo, true, false);
+        for (int i = 0; i < 3; i++) {
+            sampling[i][run] = each[i]->sampling;
+            integrating[i][run] = each[i]->integrating;
+        }
     }
-    t.usual.sampling = median(time[0], GRID_RUNS);
-    t.usual.integrating = median(time[1], GRID_RUNS);
-    t.ours.sampling = median(time[2], GRID_RUNS);
-    t.ours.integrating = median(time[3], GRID_RUNS);
+    for (int i = 0; i < 3; i++) {
+        each[i]->sampling = median(sampling[i], GRID_RUNS);
+        each[i]->integrating = median(integrating[i], GRID_RUNS);
+    }
     bsdf_free(b);
     return t;
 }
@@ -680,14 +709,18 @@ static void print_ratios(const struct results *r)
         for (int op = 0; op < OPS; op++)
             printf("%12.2f", r->calls[m][op].one / r->calls[m][op].many);
     }
-    printf("\n%-42s%12s%12s%12s\n", "usual chi-square / ours, 51 x 102 bins",
-           "samples", "masses", "both");
+    printf("\n%-42s%12s%12s%12s%16s\n",
+           "usual chi-square / ours, 51 x 102 bins", "samples", "masses",
+           "both", "with weights");
     for (int k = 0; k < GRIDS; k++) {
-        const struct grid_test *a = &r->grid[k].usual, *b = &r->grid[k].ours;
-        printf("  %-40s%12.2f%12.2f%12.2f  (goal: at least %g)\n",
+        const struct grid_tests *t = &r->grid[k];
+        const struct grid_test *a = &t->usual, *b = &t->ours;
+        const double usual = a->sampling + a->integrating;
+        printf("  %-40s%12.2f%12.2f%12.2f%16.2f  (goal of both: %g)\n",
                grids[k].name, a->sampling / b->sampling,
                a->integrating / b->integrating,
-               (a->sampling + a->integrating) / (b->sampling + b->integrating),
+               usual / (b->sampling + b->integrating),
+               usual / (t->weighed.sampling + t->weighed.integrating),
                goal_ratio);
     }
     printf("%-42s%12s\n", "chi-square / drawing its samples", "time");
@@ -728,18 +761,28 @@ static void print_times(const struct results *r)
         printf("  %-40s%7.2f ns  (goal: at most %g)\n", lobes[k].name,
                r->pdf[k], goal_pdf_ns);
     printf("chi-square of %.0g samples on %d x %d bins, alpha .25, at 45 "
-           "degrees\n  %-22s%14s%14s%14s%22s\n",
+           "degrees\n"
+           "  the usual one's sample() gives weights in three bands as well, "
+           "which a chi-square does\n  not look at; ours without them, and "
+           "with them\n"
+           "  %-22s%14s%14s%14s%22s\n",
            (double)GRID_SAMPLES, STRIPS, SLICES, "", "samples, ms",
            "masses, ms", "mean weight", "chi-square / degrees");
     for (int k = 0; k < GRIDS; k++) {
-        const struct grid_test *t[] = { &r->grid[k].usual, &r->grid[k].ours };
-        for (int i = 0; i < 2; i++)
-            printf("  %-22s%14.1f%14.1f%14.4f%15.0f /%5ld%s\n",
+        static const char *const who[] = { "usual", "ours", "ours, weights" };
+        const struct grid_tests *all = &r->grid[k];
+        const struct grid_test *t[] = { &all->usual, &all->ours,
+                                        &all->weighed };
+        for (int i = 0; i < 3; i++) {
+            char weight[16] = "-";
+            if (i != 1)
+                snprintf(weight, sizeof weight, "%.4f", t[i]->weight);
+            printf("  %-22s%14.1f%14.1f%14s%15.0f /%5ld  %s\n",
                    i ? "" : grids[k].name, t[i]->sampling, t[i]->integrating,
-                   t[i]->weight, t[i]->statistic, t[i]->degrees,
-                   i ? "  ours" : "  usual");
+                   weight, t[i]->statistic, t[i]->degrees, who[i]);
+        }
         printf("  %-22slargest error of a mass, ours: %.1g\n", "",
-               r->grid[k].ours.error);
+               all->ours.error);
     }
     printf("chi-square of %.0g samples, at 45 degrees\n",
            (double)plan_default.samples);

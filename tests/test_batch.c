@@ -6,6 +6,7 @@
 #include "bsdf/bsdf.h"
 #include "bsdf/rng.h"
 #include "tests/close.h"
+#include "validate/partition.h"
 
 enum { EDGES = 14, CORNERS = 9, N = 1500 };
 
@@ -151,6 +152,105 @@ static void random_numbers_are_the_same_bits(void **state)
     }
 }
 
+/* Whether a bin's angles hold a direction, but for rounding. */
+static bool holds(struct patch p, struct vec3 w)
+{
+    const double slack = 1e-14;
+    const double theta = atan2(sqrt(w.x * w.x + w.y * w.y), w.z);
+    const double middle = (p.phi0 + p.phi1) / 2;
+    const double phi = remainder(atan2(w.y, w.x) - middle, 2 * PI);
+    return theta >= p.theta0 - slack && theta <= p.theta1 + slack &&
+           (fabs(phi) <= (p.phi1 - p.phi0) / 2 + slack ||
+            theta * (PI - theta) < 1e-300);
+}
+
+/* A corner of a bin, or within rounding of it. */
+static struct vec3 corner_of(struct patch p, size_t which)
+{
+    const double theta = which & 1 ? p.theta0 : p.theta1;
+    const double phi = which & 2 ? p.phi0 : p.phi1;
+    const double off = ((double)(which / 4 % 3) - 1) * 0x1p-53;
+    return (struct vec3){ sin(theta + off) * cos(phi), sin(theta) * sin(phi),
+                          cos(theta) };
+}
+
+/* All together, and as blocks that start and end anywhere. */
+static void find_them(const struct partition *p, size_t n, struct dirs w)
+{
+    static uint32_t all[N], some[N];
+    partition_find(p, n, w, all);
+    for (size_t i = 0; i < n; i++) {
+        const struct vec3 d = dirs_at(w, i);
+        if (!(vec3_dot(d, d) > 0.5))
+            assert_int_equal(all[i], partition_bins(p));
+        else if (all[i] >= partition_bins(p) ||
+                 !holds(partition_patch(p, all[i]), d))
+            fail_msg("%a %a %a is not in bin %u", d.x, d.y, d.z, all[i]);
+    }
+    for (size_t at = 0, k = 0; at < n; at += k) {
+        k = at % 7 + 1 < n - at ? at % 7 + 1 : n - at;
+        partition_find(p, k, dirs_from(w, at), some);
+        assert_memory_equal(some, all + at, k * sizeof *some);
+    }
+}
+
+/* Pilots of two lobes; one side has none. */
+static struct partition *bins_about(struct vec3 a, struct vec3 b, double width)
+{
+    enum { PILOTS = 3000 };
+    static struct vec3 pilot[PILOTS];
+    for (size_t i = 0; i < PILOTS; i++) {
+        const struct vec3 u = rng_uniform((struct rng){ 5, 0 }, i);
+        const struct vec3 off = { width * (u.x - 0.5), width * (u.y - 0.5),
+                                  width * (u.z - 0.5) };
+        pilot[i] = vec3_unit(vec3_add(i % 3 ? a : b, off));
+    }
+    struct partition *p = partition_new(pilot, PILOTS);
+    assert_non_null(p);
+    return p;
+}
+
+static void directions_are_in_their_bins(void **state)
+{
+    (void)state;
+    static double w[3][N];
+    const struct vec3 up = dir_from_degrees(40, 170);
+    struct partition *const p[] = {
+        bins_about(up, dir_from_degrees(80, 10), 0.3),
+        bins_about(up, dir_from_degrees(130, -90), 1),
+        bins_about(up, dir_from_degrees(179.99, 0), 1e-4),
+        bins_about(dir_from_degrees(95, 0), dir_from_degrees(0, 0), 0.01),
+        partition_new(NULL, 0),
+    };
+    for (size_t k = 0; k < sizeof p / sizeof *p; k++) {
+        for (size_t i = 0; i < EDGES * CORNERS; i++)
+            put(w, i, edge(i));
+        put(w, 0, (struct vec3){ NAN, 0, 1 });
+        put(w, 1, (struct vec3){ 0, 0, 0 });
+        put(w, 2, (struct vec3){ 0, -1, -0.0 });
+        find_them(p[k], EDGES * CORNERS, of(w, 0));
+        for (size_t i = 0; i < 12 * partition_bins(p[k]); i += N) {
+            for (size_t j = 0; j < N; j++)
+                put(w, j,
+                    corner_of(partition_patch(p[k], (i + j) / 12 %
+                                                        partition_bins(p[k])),
+                              (i + j) % 12));
+            find_them(p[k], N, of(w, 0));
+        }
+        for (size_t i = 0; i < 200 * (size_t)N; i += N) {
+            for (size_t j = 0; j < N; j++) {
+                const struct vec3 u = rng_uniform((struct rng){ 6, k }, i + j);
+                const double z = 2 * u.x - 1, r = sqrt((1 - z) * (1 + z));
+                put(w, j,
+                    (struct vec3){ r * cos(2 * PI * u.y), r * sin(2 * PI * u.y),
+                                   z });
+            }
+            find_them(p[k], N, of(w, 0));
+        }
+        partition_free(p[k]);
+    }
+}
+
 int main(void)
 {
 #define CONDUCTOR "roughconductor:eta=0.3,k=2.7,"
@@ -202,6 +302,8 @@ int main(void)
           .initial_state = others },
         { "random numbers are the same bits in batches",
           random_numbers_are_the_same_bits },
+        { "directions are found in the bins that hold them",
+          directions_are_in_their_bins },
     };
     return cmocka_run_group_tests_name("batch", tests, NULL, NULL);
 }

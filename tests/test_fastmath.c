@@ -201,6 +201,31 @@ static void ends_are_exact(void **state)
     assert_true(fm_erfcx(1e300) > 0);
 }
 
+static void sines_of_angles_are_close(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (uint64_t i = 0; i < DRAWS; i++) {
+        const struct vec3 v = rng_uniform((struct rng){ 1, 7 }, i);
+        const double near = PI / 2 * round(16 * v.x - 8);
+        const double x[] = { 32 * v.y - 16,
+                             near + (v.y - 0.5) * exp2(-60 * v.z), near };
+        for (int k = 0; k < 3; k++) {
+            double s, c;
+            fm_sincos(x[k], &s, &c);
+            const long double sl = sinl(x[k]), cl = cosl(x[k]);
+            const long double off_s =
+                fabsl(s - sl) / (fabsl(sl) * DBL_EPSILON + 0x1p-81L);
+            const long double off_c =
+                fabsl(c - cl) / (fabsl(cl) * DBL_EPSILON + 0x1p-81L);
+            worst = fmax(worst, (double)fmaxl(off_s, off_c));
+        }
+    }
+    if (!(worst <= 2))
+        print_error("off by %g units\n", worst);
+    assert_true(worst <= 2);
+}
+
 int main(void)
 {
     static struct function e = {
@@ -221,6 +246,8 @@ int main(void)
         { "-log(1 - x) is within a unit", is_close, .initial_state = &l1 },
         { "the sine of turns is within two units", is_close,
           .initial_state = &s },
+        { "sine and cosine of angles are within two units",
+          sines_of_angles_are_close },
         { "the cosine of turns is within two units", is_close,
           .initial_state = &c },
         { "exp(x^2) erfc(x) is within ten units", is_close,

@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "bsdf/lanes.h"
+
 enum { QUANTILES = 20, INTERVALS_MAX = 192 };
 enum { COARSE_THETA = 5, COARSE_PHI = 4 };
 
@@ -28,8 +30,24 @@ struct side {
     bool empty;                      /* without pilots */
 };
 
+/* A strip as a search ends at it: its first bin, and what its slices are found
+ * by. */
+struct strip {
+    uint32_t first, last; /* last: how many slices, less one */
+    size_t keys;
+};
+
+/* The keys of all cuts one behind another, 2^steps of each with infinity behind
+ * the last; those of theta above and below come first, then those of phi. */
+struct search {
+    int theta_steps, phi_steps;
+    double *theta, *phi;
+    struct strip strip[2][INTERVALS_MAX];
+};
+
 struct partition {
     struct side side[2]; /* above and below */
+    struct search search;
     size_t bins;
     struct vec3 *pilot; /* by bins */
     size_t *first;      /* pilot of each bin; one more at the end */
@@ -67,21 +85,16 @@ static int ascending(const void *a, const void *b)
  * tangent: tan^2(theta), with a minus below the horizon, and the way round a
  * square instead of a circle.  Both keep all digits, at the normal and at the
  * horizon. */
-static double theta_key(struct vec3 w)
+INLINE double theta_key(struct vec3 w)
 {
     const double tan2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
     return w.z < 0 ? -tan2 : tan2;
 }
 
-static double square(double x, double y)
+INLINE double square(double x, double y)
 {
     const double d = fabs(x) + fabs(y) + 0x1p-1022, s = y / d;
     return x >= 0 ? s : copysign(2, y) - s;
-}
-
-static double phi_key(const struct side *s, struct vec3 w)
-{
-    return square(w.x * s->cos0 + w.y * s->sin0, w.y * s->cos0 - w.x * s->sin0);
 }
 
 static void keys_make(struct side *s)
@@ -97,17 +110,53 @@ static void keys_make(struct side *s)
         }
 }
 
-/* The interval that holds a key; the ends belong to the outer ones.  Without a
- * branch on the key, which no processor could predict. */
-static size_t interval(const struct cuts *c, double key)
+static int max(int a, int b)
 {
-    size_t low = 0;
-    for (size_t n = c->count; n > 1;) {
-        const size_t half = n / 2;
-        low = key < c->key[low + half] ? low : low + half;
-        n -= half;
+    return a > b ? a : b;
+}
+
+static int steps_for(size_t count)
+{
+    int steps = 0;
+    while ((size_t)1 << steps < count)
+        steps++;
+    return steps;
+}
+
+static void keys_lay(const struct cuts *c, int steps, double *key)
+{
+    for (size_t i = 0; i < (size_t)1 << steps; i++)
+        key[i] = i < c->count ? c->key[i] : INFINITY;
+}
+
+static bool search_make(struct partition *p)
+{
+    struct search *t = &p->search;
+    for (int below = 0; below < 2; below++) {
+        const struct side *s = &p->side[below];
+        t->theta_steps = max(t->theta_steps, steps_for(s->theta.count));
+        for (int k = 0; k < QUANTILES; k++)
+            t->phi_steps = max(t->phi_steps, steps_for(s->phi[k].count));
     }
-    return low;
+    t->theta = malloc((2 * sizeof *t->theta) << t->theta_steps);
+    t->phi = malloc((2 * QUANTILES * sizeof *t->phi) << t->phi_steps);
+    for (int below = 0; t->theta && t->phi && below < 2; below++) {
+        const struct side *s = &p->side[below];
+        keys_lay(&s->theta, t->theta_steps,
+                 t->theta + ((size_t)below << t->theta_steps));
+        for (int k = 0; k < QUANTILES; k++)
+            keys_lay(&s->phi[k], t->phi_steps,
+                     t->phi +
+                         ((size_t)(below * QUANTILES + k) << t->phi_steps));
+        for (size_t i = 0; i < s->theta.count; i++) {
+            const size_t k = s->theta.quantile[i];
+            t->strip[below][i] = (struct strip){
+                (uint32_t)s->first[i], (uint32_t)s->phi[k].count - 1,
+                (size_t)(below * QUANTILES + (int)k) << t->phi_steps
+            };
+        }
+    }
+    return t->theta && t->phi;
 }
 
 /* Cuts [from, to] at the quantiles of n sorted values, at fewer of them where
@@ -161,13 +210,68 @@ static void side_cut(struct side *s, double from, double to,
     }
 }
 
-static size_t find(const struct partition *p, struct vec3 w)
+/* Directions on their way to a bin. */
+struct sought {
+    double theta[LANES_MAX], phi[LANES_MAX];     /* keys */
+    uint64_t from[LANES_MAX];                    /* where theirs begin */
+    uint64_t low[LANES_MAX];                     /* the interval found */
+    uint64_t below[LANES_MAX], known[LANES_MAX]; /* 0 or 1 */
+};
+
+LANES static void keys_of(const struct side *side, size_t n, struct dirs w,
+                          struct sought *t)
 {
-    if (!(vec3_dot(w, w) > 0.5)) /* not a number fails too */
-        return p->bins;
-    const struct side *s = &p->side[w.z < 0];
-    const size_t i = interval(&s->theta, theta_key(w));
-    return s->first[i] + interval(&s->phi[s->theta.quantile[i]], phi_key(s, w));
+    const double c0 = side[0].cos0, s0 = side[0].sin0;
+    const double c1 = side[1].cos0, s1 = side[1].sin0;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct vec3 d = dirs_at(w, i);
+        const double c = d.z < 0 ? c1 : c0, s = d.z < 0 ? s1 : s0;
+        t->theta[i] = theta_key(d);
+        t->phi[i] = square(d.x * c + d.y * s, d.y * c - d.x * s);
+        t->below[i] = d.z < 0 ? 1 : 0;
+        t->known[i] = vec3_dot(d, d) > 0.5 ? 1 : 0; /* not if it is a NaN */
+    }
+}
+
+/* The intervals that hold the keys; the ends belong to the outer ones.  Without
+ * a branch on the key, which no processor could predict, and a step of all
+ * searches before the next of any, as a step waits for the one before. */
+LANES static void search(const double *key, int steps, size_t n,
+                         const double *sought, const uint64_t *from,
+                         uint64_t *low)
+{
+    for (size_t i = 0; i < n; i++)
+        low[i] = 0;
+    for (uint64_t half = (uint64_t)1 << steps >> 1; half > 0; half /= 2)
+        LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        low[i] += sought[i] < key[from[i] + low[i] + half] ? 0 : half;
+}
+
+/* n <= LANES_MAX */
+static void find(const struct partition *p, size_t n, struct dirs w,
+                 uint32_t *bin)
+{
+    const struct search *s = &p->search;
+    const struct strip *strip[LANES_MAX];
+    struct sought t;
+    keys_of(p->side, n, w, &t);
+    for (size_t i = 0; i < n; i++)
+        t.from[i] = t.below[i] << s->theta_steps;
+    search(s->theta, s->theta_steps, n, t.theta, t.from, t.low);
+    for (size_t i = 0; i < n; i++) {
+        /* A key as large as infinity has gone beyond the last. */
+        const size_t last = p->side[t.below[i]].theta.count - 1;
+        strip[i] = &s->strip[t.below[i]][t.low[i] < last ? t.low[i] : last];
+        t.from[i] = strip[i]->keys;
+    }
+    search(s->phi, s->phi_steps, n, t.phi, t.from, t.low);
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t slice = (uint32_t)t.low[i], last = strip[i]->last;
+        const uint32_t at = strip[i]->first + (slice < last ? slice : last);
+        bin[i] = t.known[i] ? at : (uint32_t)p->bins;
+    }
 }
 
 /* Keeps the pilots in the order of their bins. */
@@ -175,12 +279,18 @@ static bool pilots_keep(struct partition *p, const struct vec3 *pilot, size_t n)
 {
     p->pilot = malloc((n + 1) * sizeof *p->pilot);
     p->first = calloc(p->bins + 2, sizeof *p->first);
-    size_t *bin = malloc((n + 1) * sizeof *bin);
+    uint32_t *bin = malloc((n + 1) * sizeof *bin);
     const bool ok = p->pilot && p->first && bin;
-    for (size_t i = 0; ok && i < n; i++) {
-        bin[i] = find(p, pilot[i]);
-        p->first[bin[i] + 1]++;
+    for (size_t at = 0; ok && at < n; at += LANES_MAX) {
+        double x[LANES_MAX], y[LANES_MAX], z[LANES_MAX];
+        const size_t k = n - at < LANES_MAX ? n - at : LANES_MAX;
+        for (size_t i = 0; i < k; i++)
+            x[i] = pilot[at + i].x, y[i] = pilot[at + i].y,
+            z[i] = pilot[at + i].z;
+        find(p, k, (struct dirs){ x, y, z }, bin + at);
     }
+    for (size_t i = 0; ok && i < n; i++)
+        p->first[bin[i] + 1]++;
     for (size_t k = 0; ok && k <= p->bins; k++)
         p->first[k + 1] += p->first[k];
     /* first[k] runs up to where k + 1 starts, and is put back. */
@@ -224,7 +334,7 @@ struct partition *partition_new(const struct vec3 *pilot, size_t n)
         side_cut(s, below * PI / 2, (below + 1) * PI / 2, polar, count, value,
                  &p->bins);
     }
-    if (!pilots_keep(p, pilot, n)) {
+    if (!search_make(p) || !pilots_keep(p, pilot, n)) {
         partition_free(p);
         p = NULL;
     }
@@ -238,6 +348,8 @@ void partition_free(struct partition *p)
 {
     if (!p)
         return;
+    free(p->search.theta);
+    free(p->search.phi);
     free(p->pilot);
     free(p->first);
     free(p);
@@ -251,8 +363,9 @@ size_t partition_bins(const struct partition *p)
 void partition_find(const struct partition *p, size_t n, struct dirs w,
                     uint32_t *bin)
 {
-    for (size_t i = 0; i < n; i++)
-        bin[i] = (uint32_t)find(p, dirs_at(w, i));
+    for (size_t at = 0; at < n; at += LANES_MAX)
+        find(p, n - at < LANES_MAX ? n - at : LANES_MAX, dirs_from(w, at),
+             bin + at);
 }
 
 /* Where a bin is: its side, strip and slice. */

@@ -626,18 +626,20 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
 }
 
 static void sample_many(const void *state, size_t n, struct dirs wo,
-                        struct dirs u, struct bsdf_sample *s)
+                        struct dirs u, struct bsdf_samples out)
 {
     struct pipe *p = pipe_of(state);
-    const size_t numbers =
-        (size_t)protocol_answer(PROTOCOL_SAMPLE, p->bands.count);
+    const int bands = p->bands.count;
+    const size_t numbers = (size_t)protocol_answer(PROTOCOL_SAMPLE, bands);
     double *all = ask_many(p, PROTOCOL_SAMPLE, n, wo, u);
-    for (size_t i = 0; i < n; i++)
-        s[i] = all ? sample_read(p, all + i * PROTOCOL_NUMBERS,
-                                 all + n * PROTOCOL_NUMBERS + i * numbers)
-                   : (struct bsdf_sample){
-                         .pdf = NAN, .weight = spectrum_of(p->bands.count, NAN)
-                     };
+    for (size_t i = 0; i < n; i++) {
+        const struct bsdf_sample a =
+            all ? sample_read(p, all + i * PROTOCOL_NUMBERS,
+                              all + n * PROTOCOL_NUMBERS + i * numbers)
+                : (struct bsdf_sample){ .pdf = NAN,
+                                        .weight = spectrum_of(bands, NAN) };
+        bsdf_samples_put(&out, i, &a);
+    }
     free(all);
 }
 

@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "bsdf/fastmath.h"
+#include "bsdf/lanes.h"
+
 enum {
     ORDER = QUADRATURE_ORDER,
     NODES = QUADRATURE_NODES,
@@ -48,9 +51,7 @@ static const double ends_limit = 2;
 /* What a rule found on a rectangle. */
 struct found {
     double value[PARTS];
-    double height;  /* the largest |f| at a node */
-    double bend[2]; /* of a rule with ends: second differences along x and
-                       along y, summed up */
+    double height; /* the largest |f| at a node */
 };
 
 struct leaf {
@@ -77,75 +78,67 @@ struct work {
     size_t leaves, size;
 };
 
-/* Asks for the values at the nodes of n rectangles, at most RULES. */
-static void ask(struct work *w, const struct rectangle *r, size_t n,
-                const double at_node[ORDER])
+/* The nodes of n rectangles. */
+LANES static void nodes(const struct rectangle *r, size_t n,
+                        const double *at_node, struct room *a)
 {
-    struct room *a = w->room;
     for (size_t at = 0; at < n; at++) {
         const double dx = (r[at].x1 - r[at].x0) / 2;
         const double dy = (r[at].y1 - r[at].y0) / 2;
+        const double x0 = r[at].x0, y0 = r[at].y0;
+        LANES_LOOP
         for (int i = 0; i < ORDER; i++) {
-            a->x[at][i] = r[at].x0 + dx * (1 + at_node[i]);
-            a->y[at][i] = r[at].y0 + dy * (1 + at_node[i]);
+            a->x[at][i] = x0 + dx * (1 + at_node[i]);
+            a->y[at][i] = y0 + dy * (1 + at_node[i]);
         }
     }
+}
+
+/* The weighted sum of a rectangle's values and the largest of them; by
+ * SHARES partial ones, whatever the width of the vectors, so that the same
+ * numbers are added in the same order everywhere. */
+enum { SHARES = 4 };
+INLINE double weighted(const double *weight, const double *f, double *height)
+{
+    double sum[SHARES] = { 0 }, top[SHARES] = { 0 };
+    for (int k = 0; k < NODES; k += SHARES)
+        LANES_LOOP
+    for (int i = 0; i < SHARES; i++) {
+        sum[i] += weight[k + i] * f[k + i];
+        top[i] = fm_max(fabs(f[k + i]), top[i]); /* a NaN is passed over */
+    }
+    for (int i = 0; i < SHARES; i++)
+        *height = fm_max(top[i], *height);
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
+LANES static void weigh(const double *value, const struct rectangle *r,
+                        size_t n, int parts, const double *row_weight,
+                        struct found *found)
+{
+    double weight[NODES];
+    for (int k = 0; k < NODES; k++)
+        weight[k] = row_weight[k / ORDER] * row_weight[k % ORDER];
+    for (size_t at = 0; at < n; at++)
+        found[at].height = 0;
+    for (int part = 0; part < parts; part++)
+        for (size_t at = 0; at < n; at++, value += NODES)
+            found[at].value[part] = (r[at].x1 - r[at].x0) *
+                                    (r[at].y1 - r[at].y0) / 4 *
+                                    weighted(weight, value, &found[at].height);
+}
+
+/* A rule of these nodes and weights on n rectangles, at most RULES. */
+static void rules(struct work *w, const struct rectangle *r, size_t n,
+                  const double *at_node, const double *row_weight,
+                  struct found *found)
+{
+    struct room *a = w->room;
+    nodes(r, n, at_node, a);
     w->f(w->context, n, (const double(*)[ORDER])a->x,
          (const double(*)[ORDER])a->y, a->value);
     *w->budget -= (long)(n * NODES);
-}
-
-/* The rule on n rectangles. */
-static void rules(struct work *w, const struct rectangle *r, size_t n,
-                  struct found *found)
-{
-    const struct room *a = w->room;
-    ask(w, r, n, node);
-    for (size_t at = 0; at < n; at++) {
-        const double area = (r[at].x1 - r[at].x0) * (r[at].y1 - r[at].y0) / 4;
-        found[at].height = 0;
-        for (int part = 0; part < w->parts; part++) {
-            const double *f = a->value + ((size_t)part * n + at) * NODES;
-            double sum = 0;
-            for (int i = 0; i < ORDER; i++) {
-                double row = 0;
-                for (int k = 0; k < ORDER; k++, f++) {
-                    row += node_weight[k] * *f;
-                    found[at].height = fmax(found[at].height, fabs(*f));
-                }
-                sum += node_weight[i] * row;
-            }
-            found[at].value[part] = area * sum;
-        }
-    }
-}
-
-/* The rule with ends on n rectangles. */
-static void rules_with_ends(struct work *w, const struct rectangle *r, size_t n,
-                            struct found *found)
-{
-    const struct room *a = w->room;
-    ask(w, r, n, end_node);
-    for (size_t at = 0; at < n; at++) {
-        const double area = (r[at].x1 - r[at].x0) * (r[at].y1 - r[at].y0) / 4;
-        found[at].bend[0] = found[at].bend[1] = 0;
-        for (int part = 0; part < w->parts; part++) {
-            const double(*f)[ORDER] = (const double(*)[ORDER])(
-                a->value + ((size_t)part * n + at) * NODES);
-            double sum = 0;
-            for (int i = 0; i < ORDER; i++)
-                for (int k = 0; k < ORDER; k++)
-                    sum += end_weight[i] * end_weight[k] * f[i][k];
-            for (int i = 0; i < ORDER; i++)
-                for (int k = 1; k + 1 < ORDER; k++) {
-                    found[at].bend[0] +=
-                        fabs(f[k - 1][i] - 2 * f[k][i] + f[k + 1][i]);
-                    found[at].bend[1] +=
-                        fabs(f[i][k - 1] - 2 * f[i][k] + f[i][k + 1]);
-                }
-            found[at].value[part] = area * sum;
-        }
-    }
+    weigh(a->value, r, n, w->parts, row_weight, found);
 }
 
 /* Whether the nodes have met what the hints say is there. */
@@ -272,11 +265,21 @@ static double off_at_ends(const struct work *w, const struct leaf *l,
     return most / w->tolerance;
 }
 
-/* The axis along which values are out of line; in turns where both are, as at a
+/* The axis along which the values at the n nodes just asked for are out of line
+ * in a rectangle, by their second differences; in turns where both are, as at a
  * corner. */
-static bool out_along_x(const struct found *ends, int depth)
+static bool out_along_x(const struct work *w, size_t at, size_t n, int depth)
 {
-    const double x = ends->bend[0], y = ends->bend[1];
+    double x = 0, y = 0;
+    for (int part = 0; part < w->parts; part++) {
+        const double(*f)[ORDER] = (const double(*)[ORDER])(
+            w->room->value + ((size_t)part * n + at) * NODES);
+        for (int i = 0; i < ORDER; i++)
+            for (int k = 1; k + 1 < ORDER; k++) {
+                x += fabs(f[k - 1][i] - 2 * f[k][i] + f[k + 1][i]);
+                y += fabs(f[i][k - 1] - 2 * f[i][k] + f[i][k + 1]);
+            }
+    }
     return x > 2 * y || (!(y > 2 * x) && depth % 2 == 0);
 }
 
@@ -308,7 +311,7 @@ static bool refine(struct work *w)
             taken[i] = w->leaf[w->leaves + i];
             halves(taken[i].r, r + 4 * i);
         }
-        rules(w, r, 4 * n, found);
+        rules(w, r, 4 * n, node, node_weight, found);
         for (size_t i = 0; i < n; i++) {
             const struct leaf *l = &taken[i];
             known[i] = know(w, l, found + 4 * i);
@@ -325,14 +328,14 @@ static bool refine(struct work *w)
         }
         for (size_t i = 0; i < waiting; i++)
             r[i] = taken[agreed[i]].r;
-        rules_with_ends(w, r, waiting, ends);
+        rules(w, r, waiting, end_node, end_weight, ends);
         for (size_t i = 0; i < waiting; i++) {
             const size_t at = agreed[i];
             const double off = off_at_ends(w, &taken[at], &known[at], &ends[i]);
             if (known[at].last || !(off > ends_limit))
                 accept(w, &taken[at], &known[at], off);
             else if (!split(w, &taken[at],
-                            out_along_x(&ends[i], taken[at].depth),
+                            out_along_x(w, i, waiting, taken[at].depth),
                             found + 4 * at))
                 return false;
         }
@@ -347,7 +350,7 @@ static bool begin(struct work *w, const struct quadrature_job *job, size_t n)
     struct found found[RULES];
     for (size_t i = 0; i < n; i++)
         r[i] = job[i].r;
-    rules(w, r, n, found);
+    rules(w, r, n, node, node_weight, found);
     for (size_t i = 0; i < n; i++) {
         /* On a graded mesh what a rectangle does not see its neighbours do: a
          * thousandth of the tolerance need not be looked at more closely. */

@@ -3,6 +3,9 @@
 
 #include <stdlib.h>
 
+#include "bsdf/fastmath.h"
+#include "bsdf/lanes.h"
+
 enum { ORDER = QUADRATURE_ORDER, NODES = QUADRATURE_NODES };
 
 /* The integrand, and room for a batch of directions. */
@@ -25,52 +28,87 @@ static bool over_make(struct over *o, size_t size)
     return room;
 }
 
+/* The directions of the nodes of n rules, ORDER angles each way. */
+LANES static void directions(const struct over *over, size_t n,
+                             const double *theta, const double *phi)
+{
+    const struct over o = *over;
+    double st[QUADRATURE_RULES * ORDER], ct[QUADRATURE_RULES * ORDER];
+    double sp[QUADRATURE_RULES * ORDER], cp[QUADRATURE_RULES * ORDER];
+    LANES_LOOP
+    for (size_t i = 0; i < n * ORDER; i++)
+        fm_sincos(theta[i], &st[i], &ct[i]);
+    LANES_LOOP
+    for (size_t i = 0; i < n * ORDER; i++)
+        fm_sincos(phi[i], &sp[i], &cp[i]);
+    for (size_t row = 0, at = 0; row < n * ORDER; row++, at += ORDER) {
+        const double s = st[row], c = ct[row];
+        const double *sine = sp + row / ORDER * ORDER;
+        const double *cosine = cp + row / ORDER * ORDER;
+        LANES_LOOP
+        for (size_t k = 0; k < ORDER; k++) {
+            o.x[at + k] = s * cosine[k];
+            o.y[at + k] = s * sine[k];
+            o.z[at + k] = c;
+            o.sine[at + k] = s;
+        }
+    }
+}
+
+LANES static void multiply(size_t n, double *value, const double *by)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        value[i] *= by[i];
+}
+
 static void on_patches(const void *context, size_t n,
                        const double (*theta)[ORDER], const double (*phi)[ORDER],
                        double *value)
 {
     const struct over *o = context;
-    for (size_t rule = 0, at = 0; rule < n; rule++) {
-        double cp[ORDER], sp[ORDER];
-        for (int k = 0; k < ORDER; k++) {
-            cp[k] = cos(phi[rule][k]);
-            sp[k] = sin(phi[rule][k]);
-        }
-        for (int i = 0; i < ORDER; i++) {
-            const double c = cos(theta[rule][i]), s = sin(theta[rule][i]);
-            for (int k = 0; k < ORDER; k++, at++) {
-                o->x[at] = s * cp[k];
-                o->y[at] = s * sp[k];
-                o->z[at] = c;
-                o->sine[at] = s;
-            }
-        }
-    }
+    directions(o, n, *theta, *phi);
     o->f(o->context, n * NODES, (struct dirs){ o->x, o->y, o->z }, value);
-    for (int part = 0; part < o->parts; part++, value += n * NODES)
-        for (size_t at = 0; at < n * NODES; at++)
-            value[at] *= o->sine[at];
+    for (int part = 0; part < o->parts; part++)
+        multiply(n * NODES, value + (size_t)part * n * NODES, o->sine);
 }
 
-/* Where a direction is in a patch. */
-static struct quadrature_hint hint_of(struct patch p, struct vec3 w)
+/* Where n directions of o are in their patches, of which o->sine has the middle
+ * of phi.  phi and that are within pi of one another and of 2 pi more. */
+LANES static void places(const struct over *over, size_t n,
+                         struct quadrature_hint *hint)
 {
-    const double middle = (p.phi0 + p.phi1) / 2;
-    return (struct quadrature_hint){
-        .x = atan2(sqrt(w.x * w.x + w.y * w.y), w.z),
-        .y = middle + remainder(atan2(w.y, w.x) - middle, 2 * PI),
-    };
+    const struct over o = *over;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const double middle = o.sine[i];
+        const double r = sqrt(o.x[i] * o.x[i] + o.y[i] * o.y[i]);
+        const double off = fm_atan2(o.y[i], o.x[i]) - middle;
+        const double turned = off > PI ? off - 2 * PI : off;
+        hint[i].x = fm_atan2(r, o.z[i]);
+        hint[i].y = middle + (off < -PI ? off + 2 * PI : turned);
+        o.sine[i] = r;
+    }
 }
 
-/* How large the integrand is at n directions, for which o has room. */
-static void heights(const struct over *o, size_t n, double *value,
-                    struct quadrature_hint *hint)
+/* How large the integrand is at n directions, of which o->sine has the sine. */
+LANES static void heights(const struct over *o, size_t n, const double *value,
+                          struct quadrature_hint *hint)
 {
-    o->f(o->context, n, (struct dirs){ o->x, o->y, o->z }, value);
     for (int part = 0; part < o->parts; part++, value += n)
-        for (size_t i = 0; i < n; i++)
-            hint[i].height =
-                fmax(hint[i].height, fabs(value[i]) * sin(hint[i].x));
+        LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        hint[i].height = fm_max(fabs(value[i]) * o->sine[i], hint[i].height);
+}
+
+static void hints_fill(const struct over *o, size_t n, double *value,
+                       struct quadrature_hint *hint)
+{
+    places(o, n, hint);
+    for (size_t i = 0; i < n; i++)
+        hint[i].height = 0;
+    o->f(o->context, n, (struct dirs){ o->x, o->y, o->z }, value);
+    heights(o, n, value, hint);
 }
 
 static size_t heeded(const struct patch_job *job)
@@ -88,15 +126,15 @@ static bool hints_make(const struct over *o, const struct patch_job *job,
         for (size_t k = 0; k < heeded(&job[i]); k++) {
             const struct vec3 w = job[i].hint[k];
             o->x[waiting] = w.x, o->y[waiting] = w.y, o->z[waiting] = w.z;
-            hint[waiting++] = hint_of(job[i].patch, w);
+            o->sine[waiting++] = (job[i].patch.phi0 + job[i].patch.phi1) / 2;
             if (waiting == o->size) {
-                heights(o, waiting, value, hint);
+                hints_fill(o, waiting, value, hint);
                 hint += waiting;
                 waiting = 0;
             }
         }
     if (value && waiting > 0)
-        heights(o, waiting, value, hint);
+        hints_fill(o, waiting, value, hint);
     free(value);
     return value;
 }

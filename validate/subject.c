@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bsdf/frame.h"
+#include "bsdf/lanes.h"
 #include "validate/energy.h"
 
 const struct plan plan_default = {
@@ -27,6 +28,11 @@ struct rng subject_rng(const struct subject *s, enum stream purpose)
     uint64_t h = hash(0xcbf29ce484222325, spec, strlen(spec));
     h = hash(h, &s->wo, sizeof s->wo);
     return (struct rng){ s->plan->seed, hash(h, tag, s->stage > 0 ? 2 : 1) };
+}
+
+size_t subject_batch(const struct subject *s)
+{
+    return bsdf_has_trouble(s->bsdf) ? SUBJECT_BATCH : 4 * LANES_MAX;
 }
 
 struct subject subject_plain(const struct bsdf *b, struct vec3 wo,
@@ -75,7 +81,6 @@ struct repeated {
 
 static struct dirs repeat(struct repeated *r, struct vec3 w, size_t n)
 {
-    n = n < SUBJECT_BATCH ? n : SUBJECT_BATCH;
     for (size_t i = 0; i < n; i++)
         r->x[i] = w.x, r->y[i] = w.y, r->z[i] = w.z;
     return (struct dirs){ r->x, r->y, r->z };
@@ -86,55 +91,75 @@ static struct dirs from(struct dirs d, size_t at)
     return (struct dirs){ d.x + at, d.y + at, d.z + at };
 }
 
-static size_t batch(size_t n, size_t at)
+static size_t least(size_t a, size_t b)
 {
-    return n - at < SUBJECT_BATCH ? n - at : SUBJECT_BATCH;
+    return a < b ? a : b;
 }
 
 void subject_eval(const struct subject *s, size_t n, struct dirs wi,
                   struct spectrum *f)
 {
+    const size_t step = subject_batch(s);
     struct repeated r;
-    const struct dirs wo = repeat(&r, s->wo, n);
-    for (size_t at = 0; at < n; at += SUBJECT_BATCH)
-        bsdf_eval_many(s->bsdf, batch(n, at), wo, from(wi, at), f + at);
+    const struct dirs wo = repeat(&r, s->wo, least(n, step));
+    for (size_t at = 0; at < n; at += step)
+        bsdf_eval_many(s->bsdf, least(n - at, step), wo, from(wi, at), f + at);
 }
 
 void subject_eval_back(const struct subject *s, size_t n, struct dirs wi,
                        struct spectrum *f)
 {
+    const size_t step = subject_batch(s);
     struct repeated r;
-    const struct dirs wo = repeat(&r, s->wo, n);
-    for (size_t at = 0; at < n; at += SUBJECT_BATCH)
-        bsdf_eval_many(s->bsdf, batch(n, at), from(wi, at), wo, f + at);
+    const struct dirs wo = repeat(&r, s->wo, least(n, step));
+    for (size_t at = 0; at < n; at += step)
+        bsdf_eval_many(s->bsdf, least(n - at, step), from(wi, at), wo, f + at);
 }
 
 void subject_pdf(const struct subject *s, size_t n, struct dirs wi, double *pdf)
 {
+    const size_t step = subject_batch(s);
     struct repeated r;
-    const struct dirs wo = repeat(&r, s->wo, n);
-    for (size_t at = 0; at < n; at += SUBJECT_BATCH)
-        bsdf_pdf_many(s->bsdf, batch(n, at), wo, from(wi, at), pdf + at);
+    const struct dirs wo = repeat(&r, s->wo, least(n, step));
+    for (size_t at = 0; at < n; at += step)
+        bsdf_pdf_many(s->bsdf, least(n - at, step), wo, from(wi, at), pdf + at);
 }
 
 void subject_sample(const struct subject *s, size_t n, struct dirs u,
                     struct bsdf_sample *out)
 {
+    const size_t step = subject_batch(s);
     struct repeated r;
-    const struct dirs wo = repeat(&r, s->wo, n);
-    for (size_t at = 0; at < n; at += SUBJECT_BATCH)
-        bsdf_sample_many(s->bsdf, batch(n, at), wo, from(u, at), out + at);
+    const struct dirs wo = repeat(&r, s->wo, least(n, step));
+    for (size_t at = 0; at < n; at += step)
+        bsdf_sample_many(s->bsdf, least(n - at, step), wo, from(u, at),
+                         out + at);
 }
 
 void subject_draw(const struct subject *s, struct rng rng, uint64_t first,
                   size_t n, struct bsdf_sample *out)
 {
     double x[SUBJECT_BATCH], y[SUBJECT_BATCH], z[SUBJECT_BATCH];
+    const size_t step = subject_batch(s);
     struct repeated r;
-    const struct dirs wo = repeat(&r, s->wo, n), u = { x, y, z };
-    for (size_t at = 0; at < n; at += SUBJECT_BATCH) {
-        rng_uniform_many(rng, first + at, batch(n, at), x, y, z);
-        bsdf_sample_many(s->bsdf, batch(n, at), wo, u, out + at);
+    const struct dirs wo = repeat(&r, s->wo, least(n, step)), u = { x, y, z };
+    for (size_t at = 0; at < n; at += step) {
+        rng_uniform_many(rng, first + at, least(n - at, step), x, y, z);
+        bsdf_sample_many(s->bsdf, least(n - at, step), wo, u, out + at);
+    }
+}
+
+void subject_draw_into(const struct subject *s, struct rng rng, uint64_t first,
+                       size_t n, struct bsdf_samples out)
+{
+    double x[SUBJECT_BATCH], y[SUBJECT_BATCH], z[SUBJECT_BATCH];
+    const size_t step = subject_batch(s);
+    struct repeated r;
+    const struct dirs wo = repeat(&r, s->wo, least(n, step)), u = { x, y, z };
+    for (size_t at = 0; at < n; at += step) {
+        rng_uniform_many(rng, first + at, least(n - at, step), x, y, z);
+        bsdf_sample_into(s->bsdf, least(n - at, step), wo, u,
+                         bsdf_samples_from(&out, at));
     }
 }
 

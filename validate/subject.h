@@ -23,7 +23,7 @@ enum stream {
     STREAM_RANDOMISE
 };
 
-enum { SUBJECT_BATCH = 4096 }; /* directions that are worth asking for */
+enum { SUBJECT_BATCH = 4096 }; /* the most that are worth asking for at once */
 
 struct energy;
 
@@ -53,6 +53,10 @@ void subject_clear(struct subject *s);
 struct subject subject_plain(const struct bsdf *b, struct vec3 wo,
                              const struct plan *plan);
 
+/** How many to ask for at a time: SUBJECT_BATCH of another program; of a model
+ * of ours as many as stay in the first cache. */
+size_t subject_batch(const struct subject *s);
+
 struct rng subject_rng(const struct subject *s, enum stream purpose);
 
 /** f and pdf of n directions of incidence, and f of the pairs turned round. */
@@ -68,6 +72,10 @@ void subject_draw(const struct subject *s, struct rng rng, uint64_t from,
                   size_t n, struct bsdf_sample *out);
 void subject_sample(const struct subject *s, size_t n, struct dirs u,
                     struct bsdf_sample *out);
+
+/** The same into arrays. */
+void subject_draw_into(const struct subject *s, struct rng rng, uint64_t from,
+                       size_t n, struct bsdf_samples out);
 
 /** All zeros, as when the light is absorbed. */
 bool subject_refused(const struct bsdf_sample *a);

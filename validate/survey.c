@@ -1,6 +1,8 @@
 /* survey.c - pilots, bins, masses, and the one pass of samples */
+#include <float.h>
 #include <stdlib.h>
 
+#include "bsdf/lanes.h"
 #include "validate/subject.h"
 
 enum { PILOTS = 16384, BATCH = SUBJECT_BATCH };
@@ -11,17 +13,6 @@ static const double mass_tolerance = 1e-10;
 static const long mass_budget = 20000000;
 
 const double survey_unknown = 1e-7;
-
-/* What no sample may be, whatever the model. */
-static bool bad(const struct subject *s, const struct bsdf_sample *a)
-{
-    for (int b = 0; b < BANDS_MAX; b++)
-        if (!(a->weight.band[b] >= 0 && isfinite(a->weight.band[b])))
-            return true;
-    return !isfinite(a->pdf) || (!subject_refused(a) &&
-                                 !(a->pdf > 0 && fabs(vec3_length(a->wi) - 1) <=
-                                                     subject_unit_error(s)));
-}
 
 static double difference(const struct delta *d, const struct bsdf_sample *a)
 {
@@ -63,46 +54,117 @@ static double largest(const struct subject *s, const struct bsdf_sample *a)
     return most * subject_compression(s, a->wi);
 }
 
-static void weigh(struct subject *s, const struct bsdf_sample *a, int bands)
+/* Samples as they come, and what they are: 1 or 0. */
+struct drawn {
+    double number[4 + BANDS_MAX][BATCH];
+    bool delta[BATCH];
+    uint64_t bad[BATCH], refused[BATCH];
+    uint32_t bin[BATCH];
+    struct bsdf_samples at; /* the arrays above */
+};
+
+static struct drawn *drawn_new(int bands)
 {
-    struct survey *v = &s->survey;
-    const double compression = subject_compression(s, a->wi);
-    for (int b = 0; b < bands; b++) {
-        struct weight_sums *sums = &v->weight[b];
-        double w = a->weight.band[b] * compression;
-        w = w > v->cap ? v->cap : w; /* a NaN stays */
-        sums->sum += w;
-        sums->square += w * w;
-        if (!a->delta)
-            sums->peak += w * w * a->pdf;
+    struct drawn *d = malloc(sizeof *d);
+    if (!d)
+        return NULL;
+    d->at = (struct bsdf_samples){ d->number[0], d->number[1], d->number[2],
+                                   d->number[3], { NULL },     d->delta };
+    for (int b = 0; b < bands; b++)
+        d->at.weight[b] = d->number[4 + b];
+    return d;
+}
+
+/* What no sample may be, whatever the model: not finite, negative, or, unless
+ * it is refused, without a pdf or a direction.  Refused is as subject_refused
+ * has it. */
+LANES static void judge(struct drawn *d, size_t n, double unit_error)
+{
+    const struct bsdf_samples a = d->at;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        d->refused[i] = a.pdf[i] == 0 ? 1 : 0;
+        d->bad[i] = 0;
+    }
+    for (int b = 0; b < BANDS_MAX && a.weight[b]; b++) {
+        const double *w = a.weight[b];
+        LANES_LOOP
+        for (size_t i = 0; i < n; i++) {
+            d->refused[i] &= w[i] == 0 ? 1 : 0;
+            d->bad[i] |= w[i] >= 0 ? w[i] > DBL_MAX ? 1 : 0 : 1;
+        }
+    }
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const double l2 = a.x[i] * a.x[i] + a.y[i] * a.y[i] + a.z[i] * a.z[i];
+        const double off = fabs(sqrt(l2) - 1);
+        const uint64_t sound = a.pdf[i] > 0 ? off <= unit_error ? 1 : 0 : 0;
+        d->bad[i] |= a.pdf[i] <= DBL_MAX ? (sound | d->refused[i]) ^ 1 : 1;
     }
 }
 
-/* What a batch of n samples holds, but for those that have a bin: their
- * directions go to wi, of which there is room for BATCH. */
-static size_t sort(struct subject *s, const struct bsdf_sample *a, size_t n,
-                   double *wi[3])
+INLINE void weigh_one(const struct bsdf_samples *a, const double *weight,
+                      size_t i, double cap, double side, double compression,
+                      double *sum, double *square, double *peak)
+{
+    double w = weight[i] * (a->z[i] * side >= 0 ? 1 : compression);
+    w = w > cap ? cap : w; /* a NaN stays */
+    *sum += w;
+    *square += w * w;
+    *peak += w * w * (a->delta[i] ? 0 : a->pdf[i]);
+}
+
+/* Adds to the sums of a band.  Eight partial sums, whatever the width of the
+ * vectors, so that the same numbers are added in the same order everywhere. */
+enum { PARTIAL = 8 };
+LANES static void weigh(const struct drawn *d, size_t n, int band, double cap,
+                        double side, double compression,
+                        struct weight_sums *sums)
+{
+    const struct bsdf_samples a = d->at;
+    const double *weight = a.weight[band];
+    double sum[PARTIAL] = { 0 }, square[PARTIAL] = { 0 }, peak[PARTIAL] = { 0 };
+    size_t at = 0;
+    for (; at + PARTIAL <= n; at += PARTIAL)
+        LANES_LOOP
+    for (int i = 0; i < PARTIAL; i++)
+        weigh_one(&a, weight, at + (size_t)i, cap, side, compression, &sum[i],
+                  &square[i], &peak[i]);
+    for (int i = 0; at < n; at++, i++)
+        weigh_one(&a, weight, at, cap, side, compression, &sum[i], &square[i],
+                  &peak[i]);
+    for (int i = 0; i < PARTIAL; i++) {
+        sums->sum += sum[i];
+        sums->square += square[i];
+        sums->peak += peak[i];
+    }
+}
+
+/* Counts what a batch of n samples holds; count has one more than the bins, for
+ * those that have none. */
+static void sort(struct subject *s, struct drawn *d, size_t n, uint64_t *count)
 {
     struct survey *v = &s->survey;
-    const int bands = bsdf_bands(s->bsdf)->count;
-    size_t spread = 0;
+    const uint32_t bins = (uint32_t)partition_bins(v->partition);
+    const double through =
+        subject_compression(s, (struct vec3){ 0, 0, -copysign(1, s->wo.z) });
+    judge(d, n, subject_unit_error(s));
+    for (int b = 0; b < BANDS_MAX && d->at.weight[b]; b++)
+        weigh(d, n, b, v->cap, s->wo.z, through, &v->weight[b]);
+    partition_find(v->partition, n, (struct dirs){ d->at.x, d->at.y, d->at.z },
+                   d->bin);
     for (size_t i = 0; i < n; i++) {
-        if (bad(s, &a[i]) && v->bad++ == 0)
-            v->first_bad = a[i];
-        if (subject_refused(&a[i])) {
-            v->refused++;
-            continue;
-        }
-        weigh(s, &a[i], bands);
-        if (a[i].delta) {
-            delta_count(v, &a[i]);
+        if (d->bad[i] && v->bad++ == 0)
+            v->first_bad = bsdf_samples_at(&d->at, i);
+        if (d->delta[i] && !d->refused[i]) {
+            const struct bsdf_sample a = bsdf_samples_at(&d->at, i);
+            delta_count(v, &a);
         } else {
-            wi[0][spread] = a[i].wi.x;
-            wi[1][spread] = a[i].wi.y;
-            wi[2][spread++] = a[i].wi.z;
+            const bool refused = d->refused[i];
+            v->refused += refused;
+            count[refused ? bins : d->bin[i]]++;
         }
     }
-    return spread;
 }
 
 static bool samples_draw(struct subject *s)
@@ -110,25 +172,18 @@ static bool samples_draw(struct subject *s)
     struct survey *v = &s->survey;
     const struct rng rng = subject_rng(s, STREAM_SURVEY);
     const size_t bins = partition_bins(v->partition);
-    double x[BATCH], y[BATCH], z[BATCH], *wi[3] = { x, y, z };
-    uint32_t bin[BATCH];
-    struct bsdf_sample *sample = malloc(BATCH * sizeof *sample);
+    struct drawn *d = drawn_new(bsdf_bands(s->bsdf)->count);
     v->samples = s->samples;
-    for (uint64_t at = 0; sample && at < v->samples; at += BATCH) {
+    const size_t batch = subject_batch(s);
+    for (uint64_t at = 0; d && at < v->samples; at += batch) {
         const uint64_t left = v->samples - at;
-        const size_t n = left < BATCH ? (size_t)left : BATCH;
-        subject_draw(s, rng, at, n, sample);
-        const size_t spread = sort(s, sample, n, wi);
-        partition_find(v->partition, spread, (struct dirs){ x, y, z }, bin);
-        for (size_t i = 0; i < spread; i++) {
-            if (bin[i] < bins)
-                v->count[bin[i]]++;
-            else
-                v->stray++;
-        }
+        const size_t n = left < batch ? (size_t)left : batch;
+        subject_draw_into(s, rng, at, n, d->at);
+        sort(s, d, n, v->count);
     }
-    free(sample);
-    return sample;
+    v->stray = v->count[bins] - v->refused;
+    free(d);
+    return d;
 }
 
 static void pdf_at(const void *context, size_t n, struct dirs w, double *value)
@@ -286,7 +341,7 @@ bool survey_make(struct subject *s, struct err *err)
     free(pilot);
     const size_t bins = v->partition ? partition_bins(v->partition) : 1;
     v->mass = calloc(bins, sizeof *v->mass);
-    v->count = calloc(bins, sizeof *v->count);
+    v->count = calloc(bins + 1, sizeof *v->count); /* and for none */
     /* What rounding puts off a full bin, no rule can agree on; the bound is
      * of a whole, and so of every part of it. */
     const double tolerance = mass_tolerance + v->rounding / 400;
