@@ -401,12 +401,16 @@ def run(validate, python, bsdf, transmits, variant):
             return None, done.stderr.strip()
         with open(out) as f:
             results = json.load(f)["results"]
-    return [
+    verdicts = [
         v
         for r in results
         for v in r["verdicts"]
         if v["verdict"] != "not applicable"
-    ], None
+    ]
+    for v in verdicts:
+        if v["wi"] and v["wi"]["theta_deg"] is None:
+            v["wi"] = None  # no direction at all
+    return verdicts, None
 
 
 def worst_first(verdict):
