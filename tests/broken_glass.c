@@ -95,7 +95,7 @@ static struct turn turn_of(const struct glass *m, struct vec3 wo,
     t.co = vec3_dot(wo, t.h) * copysign(1, wo.z);
     t.ci = vec3_dot(wi, t.h) * copysign(1, wi.z);
     t.exists = (t.co > 0 && t.ci > 0) || m->fault == BACK_FACING ||
-               m->fault == SAME_SIDE;
+               (m->fault == SAME_SIDE && !reflects && wo.z * wi.z > 0);
     t.co = fabs(t.co);
     t.ci = fabs(t.ci);
     t.share = reflects ? fresnel(m, t.co, t.n) : through(m, t.co, t.ci, t.n);

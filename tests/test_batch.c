@@ -224,7 +224,7 @@ static void directions_are_in_their_bins(void **state)
     };
     for (size_t k = 0; k < sizeof p / sizeof *p; k++) {
         for (size_t i = 0; i < EDGES * CORNERS; i++)
-            put(w, i, edge(i));
+            put(w, i, edge(i % EDGES));
         put(w, 0, (struct vec3){ NAN, 0, 1 });
         put(w, 1, (struct vec3){ 0, 0, 0 });
         put(w, 2, (struct vec3){ 0, -1, -0.0 });

@@ -346,7 +346,7 @@ static bool refine(struct work *w)
 /* The first rule on up to RULES jobs. */
 static bool begin(struct work *w, const struct quadrature_job *job, size_t n)
 {
-    struct rectangle r[RULES];
+    struct rectangle r[RULES] = { { 0 } };
     struct found found[RULES];
     for (size_t i = 0; i < n; i++)
         r[i] = job[i].r;
