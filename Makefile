@@ -61,6 +61,10 @@ FOLDERS  := $(patsubst %/,%,$(wildcard bsdf/ validate/ plots/ integrator/))
 SOURCES  := $(foreach d,$(FOLDERS),$(wildcard $(d)/*.c))
 HEADERS  := $(foreach d,$(FOLDERS) tests,$(wildcard $(d)/*.h))
 TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
+# What `make test` runs.  Statistics over thousands of cases ask nothing new of
+# memory, and sanitizers make them take minutes.
+RUN      := $(if $(filter sanitize,$(config)),\
+              $(filter-out test_calibration test_mutants,$(TESTS)),$(TESTS))
 # Programs of tests/ that `make test` does not run, each with its own target.
 LONG     := $(wildcard $(patsubst %,tests/%.c,bench mutants baselines calibrate))
 HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
@@ -283,15 +287,15 @@ $(foreach m,$(MAINS),$(eval $(call staged,$(m))))
 
 .PHONY: test run-tests headers
 test: setup ## set up, build, run every test (config=sanitize: with sanitizers)
-	@$(MAKE) --no-print-directory -j$(JOBS) all headers $(TESTS:%=$(B)/bin/tests/%)
+	@$(MAKE) --no-print-directory -j$(JOBS) all headers $(RUN:%=$(B)/bin/tests/%)
 	@$(MAKE) --no-print-directory run-tests
 
+# Side by side; what one prints stays together.
 run-tests:
-	@failed=; \
-	for t in $(TESTS); do \
-	    BIN=$(BIN) $(WRAP) $(B)/bin/tests/$$t || failed="$$failed $$t"; \
-	done; \
-	[ -z "$$failed" ] || { echo "failed:$$failed" >&2; exit 1; }
+	@$(MAKE) --no-print-directory -k -O -j$(JOBS) $(RUN:%=run-%)
+
+run-%:
+	@BIN=$(BIN) $(WRAP) $(B)/bin/tests/$*
 
 headers: $(HEADERS:%=$(B)/obj/%.alone)
 $(B)/obj/%.h.alone: %.h Makefile
@@ -301,7 +305,7 @@ $(B)/obj/%.h.alone: %.h Makefile
 .PHONY: valgrind
 valgrind: test ## the tests that malformed input goes through, under valgrind
 	@command -v valgrind >/dev/null || { echo "valgrind is missing" >&2; exit 2; }
-	@$(MAKE) --no-print-directory run-tests TESTS='$(filter test_spec test_ior test_cli,$(TESTS))' \
+	@$(MAKE) --no-print-directory run-tests RUN='$(filter test_spec test_ior test_cli,$(TESTS))' \
 	    WRAP='valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite,indirect'
 
 # By file as well with V=1.

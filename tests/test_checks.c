@@ -92,10 +92,8 @@ static void sound_models_pass_over_many_seeds(void **state)
 static void alpha_one_percent_off_fails_chi2(void **state)
 {
     (void)state;
-    /* The share that is refused, 1e-3, is off by 9 %: so many samples that the
-     * verdict does not hang on their seed. */
-    expect(METAL, "fault=sampled_alpha,size=1.01", 20, 16000000,
-           "pdf chi2 jacobian weights");
+    /* From near the normal, where hardly any sample is refused. */
+    expect(METAL, "fault=sampled_alpha,size=1.01", 5, 1000000, "chi2 jacobian");
     expect(METAL, "fault=sampled_alpha,size=1.01,alpha=0.02,visible=true", 20,
            1000000, "chi2 jacobian");
 }
