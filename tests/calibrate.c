@@ -247,8 +247,27 @@ static bool calibrate(FILE *out, const struct request *r, bool *ok,
 
 /* -- power ----------------------------------------------------------------- */
 
+/* What was found so far is on standard output before the end, as it takes a
+ * while. */
+static struct {
+    FILE *out;
+    char *text;
+    size_t size, shown;
+} report;
+
+static void show(void)
+{
+    fflush(report.out);
+    fwrite(report.text + report.shown, 1, report.size - report.shown, stdout);
+    fflush(stdout);
+    report.shown = report.size;
+}
+
 static void progress_of(const char *what, size_t done, size_t of)
 {
+    show();
+    if (!isatty(2))
+        return;
     fprintf(stderr, "\r%s: %zu of %zu, %.0f s\033[K%s", what, done, of,
             elapsed(), done == of ? "\r\033[K" : "");
     fflush(stderr);
@@ -266,7 +285,7 @@ static bool power(FILE *out, const struct request *r, bool *ok, struct err *err)
         .seeds_pdf = 100,
         .seeds_alpha = 100,
         .seeds_leaks = 50,
-        .progress = isatty(2) ? progress_of : NULL,
+        .progress = progress_of,
     };
     const bool made = acceptance(&a, ok, err);
     fprintf(out, "\n");
@@ -278,8 +297,6 @@ int main(int argc, char **argv)
 {
     struct request r = { .seed = 1, .rounds = 64, .samples = 50000 };
     struct err err;
-    char *text = NULL;
-    size_t size = 0;
     bool ok = false;
     gsl_set_error_handler_off();
     (void)elapsed();
@@ -288,17 +305,18 @@ int main(int argc, char **argv)
                                "Tries how far the verdicts can be trusted.", 0,
                                0, 0 },
                argc, argv, 0, NULL, &r);
-    FILE *out = open_memstream(&text, &size);
-    bool made = out || err_set(&err, "out of memory");
-    made = made && (r.power ? power : calibrate)(out, &r, &ok, &err);
-    if (out && fclose(out) != 0)
-        made = err_set(&err, "out of memory");
+    report.out = open_memstream(&report.text, &report.size);
+    bool made = report.out || err_set(&err, "out of memory");
+    made = made && (r.power ? power : calibrate)(report.out, &r, &ok, &err);
     if (made)
-        fputs(text, stdout);
+        show();
+    if (report.out && fclose(report.out) != 0)
+        made = err_set(&err, "out of memory");
     if (made && r.publish)
-        made = publish(r.publish, r.power ? "power" : "calibrate", text, &err);
+        made = publish(r.publish, r.power ? "power" : "calibrate", report.text,
+                       &err);
     if (!made)
         fprintf(stderr, "calibrate: %s\n", err.text);
-    free(text);
+    free(report.text);
     return !made ? EXIT_REQUEST : ok ? EXIT_SOUND : EXIT_UNSOUND;
 }

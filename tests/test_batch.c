@@ -205,7 +205,7 @@ static struct partition *bins_about(struct vec3 a, struct vec3 b, double width)
                                   width * (u.z - 0.5) };
         pilot[i] = vec3_unit(vec3_add(i % 3 ? a : b, off));
     }
-    struct partition *p = partition_new(pilot, PILOTS);
+    struct partition *p = partition_new(pilot, PILOTS, 0);
     assert_non_null(p);
     return p;
 }
@@ -220,7 +220,7 @@ static void directions_are_in_their_bins(void **state)
         bins_about(up, dir_from_degrees(130, -90), 1),
         bins_about(up, dir_from_degrees(179.99, 0), 1e-4),
         bins_about(dir_from_degrees(95, 0), dir_from_degrees(0, 0), 0.01),
-        partition_new(NULL, 0),
+        partition_new(NULL, 0, 0),
     };
     for (size_t k = 0; k < sizeof p / sizeof *p; k++) {
         for (size_t i = 0; i < EDGES * CORNERS; i++)

@@ -61,6 +61,8 @@ static void points_draw(const struct subject *s, struct room *r)
 static void differences(const struct subject *s, struct jacobian_point *p,
                         const struct bsdf_sample *sample)
 {
+    /* What the rounding of wi is worth in a difference, twice over. */
+    const double rounding = 2 * s->claims.epsilon;
     double off[AXES], length[AXES], longest = 0;
     for (int a = 0; a < AXES; a++, sample += STEPS) {
         const double h = step_of(s, p->u[a]);
@@ -72,7 +74,7 @@ static void differences(const struct subject *s, struct jacobian_point *p,
         const struct vec3 half =
             vec3_scale(1 / h, vec3_minus(sample[2].wi, sample[3].wi));
         p->d[a] = vec3_scale(1. / 3, vec3_minus(vec3_scale(4, half), whole));
-        off[a] = vec3_length(vec3_minus(half, whole));
+        off[a] = vec3_length(vec3_minus(half, whole)) + rounding / h;
         length[a] = vec3_length(p->d[a]);
         longest = fmax(longest, length[a]);
     }

@@ -304,7 +304,7 @@ static bool pilots_keep(struct partition *p, const struct vec3 *pilot, size_t n)
     return ok;
 }
 
-struct partition *partition_new(const struct vec3 *pilot, size_t n)
+struct partition *partition_new(const struct vec3 *pilot, size_t n, size_t m)
 {
     struct partition *p = calloc(1, sizeof *p);
     struct polar *polar = calloc(n + 1, sizeof *polar);
@@ -334,7 +334,7 @@ struct partition *partition_new(const struct vec3 *pilot, size_t n)
         side_cut(s, below * PI / 2, (below + 1) * PI / 2, polar, count, value,
                  &p->bins);
     }
-    if (!search_make(p) || !pilots_keep(p, pilot, n)) {
+    if (!search_make(p) || !pilots_keep(p, pilot, n + m)) {
         partition_free(p);
         p = NULL;
     }

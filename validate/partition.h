@@ -16,9 +16,10 @@
 
 struct partition;
 
-/** From n pilot directions, unit vectors; may be none.  NULL when out of
- * memory.  Owned by the caller. */
-struct partition *partition_new(const struct vec3 *pilot, size_t n);
+/** From n pilot directions, unit vectors; may be none.  Behind them m further
+ * directions where the lobe goes on, which shape no bin but are hints for its
+ * integral.  NULL when out of memory.  Owned by the caller. */
+struct partition *partition_new(const struct vec3 *pilot, size_t n, size_t m);
 void partition_free(struct partition *p); /* NULL is fine */
 
 size_t partition_bins(const struct partition *p);
@@ -39,8 +40,8 @@ size_t partition_group(const struct partition *p, enum partition_grouping by,
                        size_t bin);
 
 /** Integrates over each bin: out[bin * parts + part].  See quadrature; the
- * pilots are the hints.  The budget is for all bins together.  False when out
- * of memory. */
+ * pilots and the further directions are the hints.  The budget is for all bins
+ * together.  False when out of memory. */
 bool partition_integrate(const struct partition *p, sphere_fn *f,
                          const void *context, int parts, double tolerance,
                          long budget, struct estimate *out);

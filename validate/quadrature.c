@@ -343,6 +343,20 @@ static bool refine(struct work *w)
     return true;
 }
 
+/* Brings the hints that promise more than a height to the front; how many they
+ * are. */
+static size_t worth(struct quadrature_hint *hint, size_t n, double height)
+{
+    size_t in = 0;
+    for (size_t i = 0; i < n; i++)
+        if (hint[i].height > height) {
+            const struct quadrature_hint t = hint[i];
+            hint[i] = hint[in];
+            hint[in++] = t;
+        }
+    return in;
+}
+
 /* The first rule on up to RULES jobs. */
 static bool begin(struct work *w, const struct quadrature_job *job, size_t n)
 {
@@ -354,7 +368,11 @@ static bool begin(struct work *w, const struct quadrature_job *job, size_t n)
     for (size_t i = 0; i < n; i++) {
         /* On a graded mesh what a rectangle does not see its neighbours do: a
          * thousandth of the tolerance need not be looked at more closely. */
-        bool negligible = job[i].n == 0;
+        const struct rectangle b = job[i].r;
+        const double area = (b.x1 - b.x0) * (b.y1 - b.y0);
+        const size_t hints =
+            worth(job[i].hint, job[i].n, w->tolerance * 1e-3 / area);
+        bool negligible = hints == 0;
         for (int part = 0; part < w->parts; part++)
             negligible &= fabs(found[i].value[part]) <= w->tolerance * 1e-3;
         for (int part = 0; negligible && part < w->parts; part++) {
@@ -362,7 +380,7 @@ static bool begin(struct work *w, const struct quadrature_job *job, size_t n)
             job[i].out[part].error += fabs(found[i].value[part]);
         }
         if (!negligible &&
-            !push(w, (struct leaf){ job[i].r, found[i], job[i].hint, job[i].n,
+            !push(w, (struct leaf){ job[i].r, found[i], job[i].hint, hints,
                                     job[i].out, 0 }))
             return false;
     }

@@ -20,7 +20,8 @@ enum stream {
     STREAM_UNIFORM,
     STREAM_JACOBIAN,
     STREAM_LOBES,
-    STREAM_RANDOMISE
+    STREAM_RANDOMISE,
+    STREAM_TAILS
 };
 
 enum { SUBJECT_BATCH = 4096 }; /* the most that are worth asking for at once */

@@ -5,7 +5,7 @@
 #include "bsdf/lanes.h"
 #include "validate/subject.h"
 
-enum { PILOTS = 16384, BATCH = SUBJECT_BATCH };
+enum { PILOTS = 16384, TAILS = 16384, BATCH = SUBJECT_BATCH };
 
 /* Leaves of this accuracy, some thousands of them, keep the whole within 1e-7;
  * the bound that is carried along says how well it went. */
@@ -239,7 +239,7 @@ static bool look_again(struct subject *s, double tolerance)
     for (size_t i = 0; slots.of_bin && i < bins; i++) {
         const double expected =
             (v->mass[i].value + v->mass[i].error) * (double)v->samples;
-        if ((double)v->count[i] > expected + 4 * sqrt(expected + 4))
+        if ((double)v->count[i] > expected + 4 * sqrt(expected) + 0.5)
             slots.of_bin[i] = ++slots.count;
     }
     slots.hint = malloc((slots.count * HINTS + 1) * sizeof *slots.hint);
@@ -277,7 +277,7 @@ static struct vec3 *pilots_draw(struct subject *s, size_t *n)
     enum { ENOUGH = 500, ROUNDS = 64 };
     const struct rng rng = subject_rng(s, STREAM_PILOT);
     const unsigned lobes = s->claims.lobes & ~(unsigned)BSDF_DELTA;
-    struct vec3 *pilot = malloc(2 * PILOTS * sizeof *pilot);
+    struct vec3 *pilot = malloc((2 * PILOTS + TAILS) * sizeof *pilot);
     struct bsdf_sample *sample = malloc(BATCH * sizeof *sample);
     size_t count[2] = { 0, 0 };
     bool rare = true;
@@ -310,6 +310,31 @@ static struct vec3 *pilots_draw(struct subject *s, size_t *n)
     return pilot;
 }
 
+/* Directions drawn with one of the first two numbers close to an end, by 2^-1
+ * to 2^-40: where a lobe has its tails, and no pilot comes.  Returns how many
+ * of TAILS there are; 0 when out of memory. */
+static size_t tails_draw(const struct subject *s, struct vec3 *tail)
+{
+    const struct rng rng = subject_rng(s, STREAM_TAILS);
+    struct bsdf_sample *sample = malloc(TAILS * sizeof *sample);
+    double u[3][TAILS];
+    size_t n = 0;
+    for (size_t i = 0; i < TAILS; i++) {
+        const struct vec3 v = rng_uniform(rng, i);
+        const double small = exp2(-1 - 39 * v.x);
+        u[0][i] = v.y, u[1][i] = v.y, u[2][i] = v.z;
+        u[i % 2][i] = i / 2 % 2 ? small : 1 - small;
+    }
+    if (sample)
+        subject_sample(s, TAILS, (struct dirs){ u[0], u[1], u[2] }, sample);
+    for (size_t i = 0; sample && i < TAILS; i++)
+        if (subject_spread(&sample[i]) &&
+            vec3_dot(sample[i].wi, sample[i].wi) > 0.5)
+            tail[n++] = sample[i].wi;
+    free(sample);
+    return n;
+}
+
 static int ascending(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -335,7 +360,7 @@ bool survey_make(struct subject *s, struct err *err)
     size_t n;
     struct vec3 *pilot = pilots_draw(s, &n);
     if (pilot) {
-        v->partition = partition_new(pilot, n);
+        v->partition = partition_new(pilot, n, tails_draw(s, pilot + n));
         v->rounding = typical_rounding(s, pilot, n);
     }
     free(pilot);
