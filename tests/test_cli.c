@@ -317,9 +317,9 @@ static void a_report_is_whole_or_not_there(void **state)
         sh("bsdf-validate diffuse --samples 1e3 >/dev/full 2>/dev/null"), 2);
 }
 
-/* The README's tour, and what follows on a BSDF of one's own and on reports: the
- * commands of the sh blocks run in a folder that has build/bin and bsdf/ alone,
- * and each line of the text blocks is a line they printed. */
+/* The README's tour, and what follows on a BSDF of one's own and on reports:
+ * the commands of the sh blocks run in a folder that has build/bin and bsdf/
+ * alone, and each line of the text blocks is a line they printed. */
 static void the_readmes_tour_runs(void **state)
 {
     (void)state;
