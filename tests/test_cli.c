@@ -8,10 +8,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/close.h"
+#include "tests/shell.h"
 
 enum { OUTPUT_MAX = 1 << 20 };
 
@@ -21,14 +21,7 @@ static char bin[4096], folder[64], output[OUTPUT_MAX];
  * $T; its exit status, or -1 if it was killed; output has what it printed. */
 static int sh(const char *command)
 {
-    FILE *pipe = popen(command, "r");
-    assert_non_null(pipe);
-    const size_t n = fread(output, 1, OUTPUT_MAX - 1, pipe);
-    output[n] = '\0';
-    while (fgetc(pipe) != EOF)
-        ;
-    const int status = pclose(pipe);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return shell(command, output, OUTPUT_MAX);
 }
 
 /* A wrong request: status 2, one line on standard error with both parts, and

@@ -15,6 +15,7 @@
 
 #include "bsdf/rng.h"
 #include "tests/close.h"
+#include "tests/shell.h"
 #include "validate/foreign.h"
 #include "validate/pipe.h"
 
@@ -27,14 +28,7 @@ static int sh(const char *command)
 {
     char line[4096];
     snprintf(line, sizeof line, "exec 2>&1 </dev/null; cd $T; %s", command);
-    FILE *pipe = popen(line, "r");
-    assert_non_null(pipe);
-    const size_t n = fread(output, 1, OUTPUT_MAX - 1, pipe);
-    output[n] = '\0';
-    while (fgetc(pipe) != EOF)
-        ;
-    const int status = pclose(pipe);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return shell(line, output, OUTPUT_MAX);
 }
 
 static void does(const char *command, int expected)

@@ -6,10 +6,10 @@
  */
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/wait.h>
 
 #include "bsdf/bsdf.h"
 #include "tests/close.h"
+#include "tests/shell.h"
 
 enum { OUTPUT_MAX = 1 << 16 };
 
@@ -22,14 +22,7 @@ static int sh(const char *command)
 {
     char line[2048];
     snprintf(line, sizeof line, "exec 2>&1; %s", command);
-    FILE *pipe = popen(line, "r");
-    assert_non_null(pipe);
-    const size_t n = fread(output, 1, OUTPUT_MAX - 1, pipe);
-    output[n] = '\0';
-    while (fgetc(pipe) != EOF)
-        ;
-    const int status = pclose(pipe);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return shell(line, output, OUTPUT_MAX);
 }
 
 static void does(const char *command)

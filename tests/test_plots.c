@@ -7,7 +7,6 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "bsdf/bsdf.h"
@@ -16,6 +15,7 @@
 #include "plots/axis.h"
 #include "plots/gnuplot.h"
 #include "tests/close.h"
+#include "tests/shell.h"
 
 enum { OUTPUT_MAX = 1 << 16, COLUMNS_MAX = 16 };
 
@@ -25,14 +25,7 @@ static char bin[4096], folder[64], output[OUTPUT_MAX];
  * $T; its exit status, or -1 if it was killed; output has what it printed. */
 static int sh(const char *command)
 {
-    FILE *pipe = popen(command, "r");
-    assert_non_null(pipe);
-    const size_t n = fread(output, 1, OUTPUT_MAX - 1, pipe);
-    output[n] = '\0';
-    while (fgetc(pipe) != EOF)
-        ;
-    const int status = pclose(pipe);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return shell(command, output, OUTPUT_MAX);
 }
 
 /* Commands that all succeed, without a word on standard error. */

@@ -8,11 +8,11 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/broken.h"
 #include "tests/close.h"
+#include "tests/shell.h"
 #include "validate/recorded.h"
 #include "validate/replay.h"
 #include "validate/report.h"
@@ -25,14 +25,7 @@ static char folder[64], output[OUTPUT_MAX], path[128];
  * $T; its exit status, or -1 if it was killed; output has what it printed. */
 static int sh(const char *command)
 {
-    FILE *pipe = popen(command, "r");
-    assert_non_null(pipe);
-    const size_t n = fread(output, 1, OUTPUT_MAX - 1, pipe);
-    output[n] = '\0';
-    while (fgetc(pipe) != EOF)
-        ;
-    const int status = pclose(pipe);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return shell(command, output, OUTPUT_MAX);
 }
 
 /* Status 2, and both parts on standard error. */
