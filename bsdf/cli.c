@@ -1,12 +1,14 @@
-/* cli.c - reading what a user typed */
+/* cli.c - reading what a user typed, telling how far the work is */
 #include "bsdf/cli.h"
 
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 
 bool cli_direction(struct vec3 *w, const char *text, struct err *err)
 {
@@ -69,4 +71,22 @@ bool cli_ior_path(const char *path, struct err *err)
         return err_set(err, "--ior-path %s: expected a folder", path);
     return setenv("BSDF_IOR_PATH", path, 1) == 0 ||
            err_set(err, "out of memory");
+}
+
+double cli_elapsed(void)
+{
+    static double first = -1;
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    const double now = (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    first = first < 0 ? now : first;
+    return now - first;
+}
+
+void cli_progress(const char *what, size_t done, size_t of)
+{
+    const double left = cli_elapsed() * (double)(of - done) / (double)done;
+    fprintf(stderr, "\r%zu of %zu %s, %.0f s left\033[K%s", done, of, what,
+            left, done == of ? "\r\033[K" : "");
+    fflush(stderr);
 }

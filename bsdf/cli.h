@@ -5,6 +5,7 @@
 #ifndef BSDF_CLI_H
 #define BSDF_CLI_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "bsdf/bands.h"
@@ -29,5 +30,12 @@ bool cli_number(double *x, const char *what, const char *text, double min,
 /** Makes a database folder the one that material names are looked up in, by
  * setting BSDF_IOR_PATH for this process; the folder must be there. */
 bool cli_ior_path(const char *path, struct err *err);
+
+/** Seconds since the first call. */
+double cli_elapsed(void);
+
+/** "done of of WHAT, N s left" on standard error, over the line that is there;
+ * wiped out when all is done.  The time is taken from the first cli_elapsed. */
+void cli_progress(const char *what, size_t done, size_t of);
 
 #endif

@@ -78,24 +78,10 @@ static error_t option(int key, char *arg, struct argp_state *state)
     return 0;
 }
 
-/* Seconds since the first call. */
-static double elapsed(void)
-{
-    static double first = -1;
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    const double now = (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-    first = first < 0 ? now : first;
-    return now - first;
-}
-
 static void progress(void *context, size_t done, size_t of)
 {
     (void)context;
-    const double left = elapsed() * (double)(of - done) / (double)done;
-    fprintf(stderr, "\r%zu of %zu runs, %.0f s left\033[K%s", done, of, left,
-            done == of ? "\r\033[K" : "");
-    fflush(stderr);
+    cli_progress("runs", done, of);
 }
 
 static void print_machine(FILE *out, uint64_t seed)
@@ -110,7 +96,7 @@ static void print_machine(FILE *out, uint64_t seed)
     const time_t now = time(NULL);
     strftime(date, sizeof date, "%Y-%m-%d", localtime(&now));
     fprintf(out, "%s, seeds from %llu, %s, %.0f minutes.\n", date,
-            (unsigned long long)seed, model, elapsed() / 60);
+            (unsigned long long)seed, model, cli_elapsed() / 60);
 }
 
 /* -- calibration ----------------------------------------------------------- */
@@ -269,7 +255,7 @@ static void progress_of(const char *what, size_t done, size_t of)
     if (!isatty(2))
         return;
     fprintf(stderr, "\r%s: %zu of %zu, %.0f s\033[K%s", what, done, of,
-            elapsed(), done == of ? "\r\033[K" : "");
+            cli_elapsed(), done == of ? "\r\033[K" : "");
     fflush(stderr);
 }
 
@@ -299,7 +285,7 @@ int main(int argc, char **argv)
     struct err err;
     bool ok = false;
     gsl_set_error_handler_off();
-    (void)elapsed();
+    (void)cli_elapsed();
     argp_err_exit_status = EXIT_REQUEST;
     argp_parse(&(struct argp){ options, option, NULL,
                                "Tries how far the verdicts can be trusted.", 0,

@@ -3,7 +3,6 @@
 #include <gsl/gsl_errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "bsdf/cli.h"
@@ -261,24 +260,10 @@ static error_t option(int key, char *arg, struct argp_state *state)
     return 0;
 }
 
-/* Seconds since the first call. */
-static double elapsed(void)
-{
-    static double first = -1;
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    const double now = (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-    first = first < 0 ? now : first;
-    return now - first;
-}
-
 static void progress(void *context, size_t done, size_t of)
 {
     (void)context;
-    const double left = elapsed() * (double)(of - done) / (double)done;
-    fprintf(stderr, "\r%zu of %zu directions, %.0f s left\033[K%s", done, of,
-            left, done == of ? "\r\033[K" : "");
-    fflush(stderr);
+    cli_progress("directions", done, of);
 }
 
 /* The files first, as a reader of the text may hang up. */
@@ -356,7 +341,7 @@ int main(int argc, char **argv)
     r.plan.samples = 0;
     r.bands = bands_default;
     gsl_set_error_handler_off();
-    (void)elapsed();
+    (void)cli_elapsed();
     argp_err_exit_status = EXIT_REQUEST;
     argp_parse(&(struct argp){ options, option, "SPEC...\n--replay FILE", about,
                                0, 0, 0 },
