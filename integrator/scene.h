@@ -33,17 +33,19 @@ struct surface {
 
 /** Lights that are no shape. */
 enum light_kind {
-    LIGHT_CONSTANT,   /* from everywhere */
-    LIGHT_HEMISPHERE, /* from the directions with y > 0 */
-    LIGHT_POINT,      /* intensity [W/sr] in radiance's place */
-    LIGHT_HIDDEN      /* a rectangle that emits to its normal's side and that
-                         nothing hits: the course's <area> */
+    LIGHT_CONSTANT,    /* from everywhere */
+    LIGHT_HEMISPHERE,  /* from the directions with y > 0 */
+    LIGHT_POINT,       /* intensity [W/sr] in radiance's place */
+    LIGHT_ENVIRONMENT, /* a picture, from everywhere */
+    LIGHT_HIDDEN       /* a rectangle that emits to its normal's side and that
+                          nothing hits: the course's <area> */
 };
 struct light {
     enum light_kind kind;
     struct spectrum radiance;
     struct vec3 position; /* of a point; of a rectangle's corner */
     struct vec3 u, v;     /* a rectangle's sides; it emits toward u x v */
+    struct environment *environment; /* the scene's once it is added */
 };
 
 /** What a file asks of the renderer, where it does; the command line goes
