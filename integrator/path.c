@@ -149,7 +149,7 @@ static struct spectrum from_light(const struct vertex *v, int light, double a,
     if (p->direct == PATH_MIS && !l.delta && light_can_be_hit(v->scene, light))
         weight *= balance(p->light_samples, l.pdf, density(v, wi));
     const struct ray ray =
-        trace_to(v->scene, hit->point, hit->normal, l.wi, l.distance);
+        l.infinite ? trace_from(hit, l.wi) : trace_to(hit, l.wi, l.point);
     ++*v->rays;
     if (!trace_blocked(v->scene, &ray))
         add(&sum, weight, f, l.radiance);
@@ -176,8 +176,7 @@ static struct spectrum from_hemisphere(const struct vertex *v, struct vec3 u)
     if (largest(s.weight) == 0)
         return sum;
     const struct vec3 dir = frame_to_world(&v->hit.shading, s.wi);
-    const struct ray ray =
-        trace_from(v->scene, v->hit.point, v->hit.normal, dir);
+    const struct ray ray = trace_from(&v->hit, dir);
     struct hit hit;
     ++*v->rays;
     const bool there = trace_hit(v->scene, &ray, &hit);
@@ -328,8 +327,7 @@ struct path path_trace(const struct scene *s, const struct path_settings *p,
                       compression, &beta))
             break;
         by = (struct chosen){ next_one.delta, next_one.pdf, v.hit.point };
-        ray = trace_from(s, v.hit.point, v.hit.normal,
-                         frame_to_world(&v.hit.shading, next_one.wi));
+        ray = trace_from(&v.hit, frame_to_world(&v.hit.shading, next_one.wi));
     }
     return out;
 }
