@@ -46,6 +46,8 @@ LANGUAGE := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno \
             -DBSDF_DATA_DIR='"$(CURDIR)/data"' $(XML2)
 COMPILE   = $(CC) $(LANGUAGE) $(FLAGS) $(WARN) $(CPPFLAGS) $(CFLAGS)
 LIBS     := -lxml2 -lgsl -lgslcblas -lyaml -ljansson -ldl -lm
+# What only the renderer and the tests need.
+INTEGRATOR_LIBS := -lembree3 -lOpenEXRCore -lpng
 
 # `make V=1` shows the commands.
 SAY := @printf '  %-5s %s\n'
@@ -118,7 +120,7 @@ $(B)/obj/%.o: %.c Makefile
 $(B)/bin/tests/%: $(B)/obj/tests/%.o $(call objects,$(HELPERS)) $(LIBRARIES)
 	@mkdir -p $(@D)
 	$(SAY) LINK $@
-	$(Q)$(COMPILE) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
+	$(Q)$(COMPILE) $(LDFLAGS) -o $@ $^ -lcmocka $(INTEGRATOR_LIBS) $(LIBS)
 
 -include $(shell find $(B)/obj -name '*.d' 2>/dev/null)
 .PRECIOUS: $(B)/obj/%.o
@@ -135,6 +137,9 @@ library Random123/threefry.h -lm                librandom123-dev
 library yaml.h             -lyaml               libyaml-dev
 library jansson.h          -ljansson            libjansson-dev
 library libxml/xmlwriter.h $(XML2),-lxml2 libxml2-dev
+library embree3/rtcore.h   -lembree3            libembree-dev
+library OpenEXR/openexr.h  -lOpenEXRCore        libopenexr-dev
+library png.h              -lpng                libpng-dev
 library cmocka.h           -lcmocka             libcmocka-dev
 library omp.h              -fopenmp             $(if $(findstring clang,$(CC)),libomp-dev,gcc)
 tool    gnuplot            -                    gnuplot-nox
