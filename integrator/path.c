@@ -163,7 +163,7 @@ static struct spectrum emission(const struct scene *s, const struct hit *hit,
     struct spectrum sum = { { 0 } };
     const struct spectrum one = spectrum_of(BANDS_MAX, 1);
     if (there)
-        return hit->emits ? hit->radiance : sum;
+        return hit->emits ? hit->surface->radiance : sum;
     for (int i = 0; i < light_count(s); i++)
         add(&sum, 1, one, light_background(s, i, dir));
     return sum;
@@ -243,10 +243,11 @@ static void see(const struct scene *s, const struct path_settings *p,
                 struct spectrum *sum)
 {
     if (hit) {
-        const bool found = hit->emits && (by->alone || !hit->unsampled);
+        const bool found =
+            hit->emits && (by->alone || !hit->surface->unsampled);
         if (found)
             add(sum, emission_weight(s, p, by, hit->light, ray->dir, hit), beta,
-                hit->radiance);
+                hit->surface->radiance);
         return;
     }
     for (int i = 0; i < light_count(s); i++) {
@@ -284,7 +285,10 @@ struct path path_trace(const struct scene *s, const struct path_settings *p,
                        int x, int y, struct sampler *sampler)
 {
     struct path out = { .rays = 0 };
-    struct vertex v = { .scene = s, .settings = p, .rays = &out.rays };
+    struct vertex v; /* the hit is filled by rays, and large */
+    v.scene = s;
+    v.settings = p;
+    v.rays = &out.rays;
     struct ray ray = camera_sample(s, x, y, sampler);
     struct chosen by = { .alone = true };
     struct spectrum beta = spectrum_of(scene_bands(s)->count, 1);

@@ -281,8 +281,7 @@ bool trace_hit(const struct scene *s, const struct ray *ray, struct hit *hit)
     hit->light = a->light;
     hit->emits = a->flags & SHAPE_EMITS &&
                  (a->surface.both_sides || vec3_dot(hit->normal, ray->dir) < 0);
-    hit->radiance = a->surface.radiance;
-    hit->unsampled = a->surface.unsampled;
+    hit->surface = &a->surface;
     return true;
 }
 

@@ -17,10 +17,9 @@ struct hit {
     struct frame shading; /* about the interpolated normal */
     const struct bsdf *bsdf;
     const struct bsdf_claims *claims; /* the BSDF's */
-    struct spectrum radiance;         /* emitted against the ray */
-    int light; /* number of the light that was hit, or -1 */
-    bool emits;
-    bool unsampled; /* surface.unsampled */
+    const struct surface *surface;
+    int light;  /* number of the light that was hit, or -1 */
+    bool emits; /* against the ray */
 };
 
 /** Whether a ray meets something, and what. */

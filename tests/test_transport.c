@@ -157,7 +157,7 @@ static void rectangle_light(void **state)
     for (int d = PATH_MIS; d <= PATH_HEMISPHERE; d++) {
         struct render_settings set = usual;
         set.path.direct = (enum path_direct)d;
-        set.samples = 4096;
+        set.samples = 2048;
         const struct brightness m = rendered(s, &set, 0);
         print_message("%-10s %.6f +- %.6f\n", direct_name[d], m.value, m.error);
         expect(m, 0.73 / PI * e);
@@ -183,7 +183,7 @@ static void disk_light(void **state)
     for (int d = PATH_MIS; d <= PATH_HEMISPHERE; d++) {
         struct render_settings set = usual;
         set.path.direct = (enum path_direct)d;
-        set.samples = 4096;
+        set.samples = 2048;
         expect(rendered(s, &set, 1), 0.73 / PI * e);
     }
     scene_free(s);
@@ -207,7 +207,7 @@ static void sphere_light(void **state)
     for (int d = PATH_MIS; d <= PATH_HEMISPHERE; d++) {
         struct render_settings set = usual;
         set.path.direct = (enum path_direct)d;
-        set.samples = 4096;
+        set.samples = 2048;
         expect(rendered(s, &set, 1), 0.73 / PI * e);
     }
     scene_free(s);
@@ -349,7 +349,7 @@ static void roulette_is_unbiased(void **state)
         set.path.max_depth = 1000;
         set.path.rr_depth = depth[i];
         set.path.rr_probability = probability[i];
-        set.samples = 1024;
+        set.samples = 512;
         expect(rendered(s, &set, 0), 0.37 / (1 - 0.6));
     }
     scene_free(s);
@@ -367,7 +367,7 @@ static void samplings_agree(void **state)
         struct scene *s = room(specs[i]);
         struct render_settings set = usual;
         set.path.max_depth = 3;
-        set.samples = 2048;
+        set.samples = 512;
         const struct brightness a = rendered(s, &set, 0);
         for (int how = PATH_COSINE; how <= PATH_UNIFORM; how++)
             for (int d = PATH_MIS; d <= PATH_HEMISPHERE; d++) {
@@ -403,7 +403,7 @@ static struct brightness sheet(const char *spec, double theta_deg, int band)
          (struct vec3){ 0, 0, 0 }, 4, 1e-4);
     done(scene_commit(s, &err), &err);
     struct render_settings set = usual;
-    set.samples = 8192;
+    set.samples = 2048;
     const struct brightness m = rendered(s, &set, band);
     scene_free(s);
     return m;
@@ -505,6 +505,61 @@ static void threads_do_not_matter(void **state)
     scene_free(s);
 }
 
+/* Of 2^k samples of a row, the first two numbers fall once each into every box
+ * of area 2^-k whose sides are powers of two, the third into each interval. */
+static void spread_samples_fill_boxes(void **state)
+{
+    enum { BITS = 8, N = 1 << BITS };
+    struct sampler *s = malloc(sizeof *s);
+    (void)state;
+    assert_non_null(s);
+    sampler_start(s, SAMPLER_LD, 3, 12345);
+    for (uint64_t row = 60; row < 68; row++) {
+        struct vec3 u[N];
+        for (uint64_t i = 0; i < N; i++) {
+            sampler_go(s, i);
+            u[i] = sampler_row(s, row);
+        }
+        for (int wide = 0; wide <= BITS + 1; wide++) {
+            char hit[N] = { 0 };
+            for (int i = 0; i < N; i++) {
+                const int x = (int)ldexp(u[i].x, wide);
+                const int y = (int)ldexp(u[i].y, BITS - wide);
+                const int box = wide > BITS ? (int)ldexp(u[i].z, BITS)
+                                            : x << (BITS - wide) | y;
+                hit[box]++;
+            }
+            for (int i = 0; i < N; i++)
+                assert_int_equal(hit[i], 1);
+        }
+    }
+    free(s);
+}
+
+/* The same mean, and less noise than the samples' own spread says. */
+static void spread_samples_know_less_noise(void **state)
+{
+    const double e = 7.1 * corner_irradiance(0.9 / 1.3, 1.7 / 1.3);
+    struct scene *s = under_rectangle();
+    struct render_settings set = usual;
+    struct render_result made;
+    struct err err;
+    (void)state;
+    set.sampler = SAMPLER_LD;
+    done(render(s, &set, &made, &err), &err);
+    double off = 0, claimed = 0;
+    for (int i = 0; i < 16; i++) {
+        const double d = (double)made.film->pixel[i].mean[0] - 0.73 / PI * e;
+        off += d * d;
+        claimed += (double)made.film->pixel[i].variance[0];
+    }
+    expect(mean_of(made.film, 0), 0.73 / PI * e);
+    print_message("variance %.2g, claimed %.2g\n", off / 16, claimed / 16);
+    assert_true(off < claimed / 4);
+    film_free(made.film);
+    scene_free(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -518,6 +573,8 @@ int main(void)
         { "all ways of sampling have one mean", samplings_agree },
         { "sheets return their albedo", sheets_return_their_albedo },
         { "lossless balls vanish", lossless_balls_vanish },
+        { "spread samples fill boxes", spread_samples_fill_boxes },
+        { "spread samples know less noise", spread_samples_know_less_noise },
         { "neither threads nor cells change a pixel", threads_do_not_matter },
     };
     return cmocka_run_group_tests_name("transport", tests, NULL, NULL);
