@@ -311,8 +311,7 @@ static void render(const struct view *w, int threads, float *rgb,
         const double from = seconds(CLOCK_THREAD_CPUTIME_ID);
 #ifdef __SSE__
         const unsigned mode = _mm_getcsr();
-        _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-        _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+        _mm_setcsr(mode | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
 #endif
         struct RTCIntersectContext c;
         struct counts count = { 0 };
@@ -378,7 +377,6 @@ static bool attach(RTCDevice device, RTCScene scene,
         memcpy(index, s->index, 3 * s->triangles * sizeof *index);
         rtcCommitGeometry(g);
         rtcAttachGeometry(scene, g);
-        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
         rtcCommitScene(scene);
     }
     rtcReleaseGeometry(g);
