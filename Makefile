@@ -46,6 +46,8 @@ LANGUAGE := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno \
             -DBSDF_DATA_DIR='"$(CURDIR)/data"' $(XML2)
 COMPILE   = $(CC) $(LANGUAGE) $(FLAGS) $(WARN) $(CPPFLAGS) $(CFLAGS)
 LIBS     := -lxml2 -lgsl -lgslcblas -lyaml -ljansson -ldl -lm
+# What the integrator needs besides; the other programs do not link it.
+INTEGRATOR_LIBS := -lembree3 -lassimp -llzma
 
 # `make V=1` shows the commands.
 SAY := @printf '  %-5s %s\n'
@@ -80,6 +82,8 @@ endif
 
 objects   = $(patsubst %.c,$(B)/obj/%.o,$(1))
 libof     = $(B)/lib$(1).a
+# Of a program, by the file with its main().
+libs      = $(if $(filter integrator/%,$(1)),$(INTEGRATOR_LIBS)) $(LIBS)
 # Each library before those that it uses.
 LIBRARIES := $(foreach d,integrator plots validate bsdf,\
                $(if $(filter $(d),$(FOLDERS)),$(call libof,$(d))))
@@ -105,7 +109,7 @@ define program
 $(B)/bin/$(PROGRAM_$(1:.c=)): $(call objects,$(1)) $(LIBRARIES)
 	@mkdir -p $$(@D)
 	$$(SAY) LINK $$@
-	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(LIBS)
+	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(call libs,$(1))
 endef
 $(foreach m,$(MAINS),$(eval $(call program,$(m))))
 $(foreach d,$(FOLDERS),$(eval $(call library,$(d))))
@@ -118,7 +122,7 @@ $(B)/obj/%.o: %.c Makefile
 $(B)/bin/tests/%: $(B)/obj/tests/%.o $(call objects,$(HELPERS)) $(LIBRARIES)
 	@mkdir -p $(@D)
 	$(SAY) LINK $@
-	$(Q)$(COMPILE) $(LDFLAGS) -o $@ $^ -lcmocka $(LIBS)
+	$(Q)$(COMPILE) $(LDFLAGS) -o $@ $^ -lcmocka -Wl,--as-needed $(INTEGRATOR_LIBS) $(LIBS)
 
 -include $(shell find $(B)/obj -name '*.d' 2>/dev/null)
 .PRECIOUS: $(B)/obj/%.o
@@ -135,6 +139,9 @@ library Random123/threefry.h -lm                librandom123-dev
 library yaml.h             -lyaml               libyaml-dev
 library jansson.h          -ljansson            libjansson-dev
 library libxml/xmlwriter.h $(XML2),-lxml2 libxml2-dev
+library lzma.h             -llzma               liblzma-dev
+library embree3/rtcore.h   -lembree3            libembree-dev
+library assimp/cimport.h   -lassimp             libassimp-dev
 library cmocka.h           -lcmocka             libcmocka-dev
 library omp.h              -fopenmp             $(if $(findstring clang,$(CC)),libomp-dev,gcc)
 tool    gnuplot            -                    gnuplot-nox
@@ -279,7 +286,7 @@ define staged
 $(STAGE)/$(PROGRAM_$(1:.c=)): $(call objects,$(1)) \
     $(LIBRARIES:$(call libof,bsdf)=$(STAGE)/libbsdf.a)
 	$$(SAY) LINK $$@
-	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(LIBS)
+	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(call libs,$(1))
 endef
 $(foreach m,$(MAINS),$(eval $(call staged,$(m))))
 
