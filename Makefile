@@ -98,7 +98,7 @@ MAINS     := $(foreach s,$(SOURCES),$(if $(PROGRAM_$(s:.c=)),$(s)))
 PROGRAMS  := $(foreach m,$(MAINS),$(B)/bin/$(PROGRAM_$(m:.c=)))
 
 .PHONY: all
-all: tools-found $(PROGRAMS) ## build the programs into build/bin/ (the default)
+all: tools-found $(PROGRAMS) scenes ## build the programs into build/bin/ (the default)
 
 define library
 $(call libof,$(1)): $(call objects,$(filter-out $(MAINS),$(filter $(1)/%,$(SOURCES))))
@@ -123,6 +123,27 @@ $(B)/bin/tests/%: $(B)/obj/tests/%.o $(call objects,$(HELPERS)) $(LIBRARIES)
 	@mkdir -p $(@D)
 	$(SAY) LINK $@
 	$(Q)$(COMPILE) $(LDFLAGS) -o $@ $^ -lcmocka -Wl,--as-needed $(INTEGRATOR_LIBS) $(LIBS)
+
+# The scenes, and a mesh that is too large to be kept.
+KNOT    := $(B)/obj/data/scenes/knot
+SCENES  := $(patsubst data/%,$(B)/%,$(wildcard data/scenes/*.xml)) \
+           $(B)/scenes/knot.ply
+
+.PHONY: scenes
+scenes: $(SCENES) ## data/scenes/ and the mesh of mesh.xml, in build/scenes/
+
+$(B)/scenes/%.xml: data/scenes/%.xml
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
+
+$(B)/scenes/knot.ply: $(KNOT)
+	@mkdir -p $(@D)
+	$(SAY) MESH $@
+	$(Q)$< $@
+
+$(KNOT): $(KNOT).o
+	$(SAY) LINK $@
+	$(Q)$(COMPILE) $(LDFLAGS) -o $@ $^ -lm
 
 -include $(shell find $(B)/obj -name '*.d' 2>/dev/null)
 .PRECIOUS: $(B)/obj/%.o
@@ -232,7 +253,7 @@ VERSION  = $(shell sed -n 's/^\#define BSDF_VERSION "\(.*\)"/\1/p' bsdf/cli.h)
 
 # bsdf.h, and what else a renderer may want, with all that they include.
 PUBLIC  := $(patsubst %,bsdf/%.h,bands bsdf cie colour err fresnel ior ndf plugin rng vec)
-TABLES  := $(shell find data -type f ! -name '.*')
+TABLES  := $(shell find data -type f ! -name '.*' ! -name '*.c')
 STAGED  := $(PROGRAMS:$(B)/bin/%=$(STAGE)/%) $(STAGE)/libbsdf.a $(STAGE)/libbsdf.pc
 # from=to, the latter below PREFIX
 INSTALLED := $(foreach f,$(PROGRAMS:$(B)/bin/%=%),$(STAGE)/$(f)=bin/$(f)) \
@@ -241,14 +262,15 @@ INSTALLED := $(foreach f,$(PROGRAMS:$(B)/bin/%=%),$(STAGE)/$(f)=bin/$(f)) \
              $(foreach f,$(PUBLIC),$(f)=include/$(f)) \
              validate/adapters/course.hpp=include/bsdf/course.hpp \
              validate/report.schema.json=share/bsdf/report.schema.json \
-             $(foreach f,$(TABLES),$(f)=share/bsdf/$(f))
+             $(foreach f,$(TABLES),$(f)=share/bsdf/$(f)) \
+             $(B)/scenes/knot.ply=share/bsdf/data/scenes/knot.ply
 
 # One word that starts with a slash.
 CHECK_PREFIX = $(if $(filter 1/,$(words $(PREFIX))$(patsubst /%,/,$(PREFIX))),,$\
                $(error PREFIX=$(PREFIX): expected an absolute path without spaces))
 
 .PHONY: install uninstall always
-install: tools-found $(STAGED) ## programs, libbsdf, headers, tables and the schema of reports, to PREFIX=/usr/local (and DESTDIR)
+install: tools-found $(STAGED) scenes ## programs, libbsdf, headers, tables and the schema of reports, to PREFIX=/usr/local (and DESTDIR)
 	@for f in $(INSTALLED); do \
 	    to="$(DESTDIR)$(PREFIX)/$${f#*=}"; \
 	    case $$f in *=bin/*) mode=755;; *) mode=644;; esac; \
@@ -410,7 +432,8 @@ peer-mitsuba: all ## validate the BSDFs of Mitsuba 3, and why some fail (Python,
 
 # -- order --------------------------------------------------------------------
 
-C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(LONG) $(HELPERS)
+C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(LONG) $(HELPERS) \
+          data/scenes/knot.c
 # What other programs include or compile by themselves, and so not linted here.
 ALONE   = $(wildcard validate/adapters/*.hpp tests/plugins/*.c tests/plugins/*.cpp)
 

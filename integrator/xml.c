@@ -375,7 +375,8 @@ bool xml_reals(struct xml_numbers *n, double *value, size_t count,
 static bool ids_add(xmlHashTable *ids, xmlNode *node, struct err *err)
 {
     for (xmlNode *n = node; n; n = xml_next(n)) {
-        const char *id = xml_get(n, "id");
+        /* Mitsuba's <ref> has another's. */
+        const char *id = xml_is(n, "ref") ? NULL : xml_get(n, "id");
         if (id && xmlHashAddEntry(ids, (const xmlChar *)id, n) != 0) {
             const xmlNode *other = xmlHashLookup(ids, (const xmlChar *)id);
             return xml_fail(n, err, "the id is taken by <%s> in line %ld",
