@@ -216,9 +216,10 @@ static void every_kind_in_every_form_is_whole_and_redraws_itself(void **state)
         quiet(line);
         assert_whole(name);
         snprintf(line, sizeof line,
-                 "printf '%%s\\n' $T/f%d.tsv $T/f%d.gp $T/%s | cmp - $T/made; "
+                 "printf '%%s\\n' $T/f%d.tsv $T/f%d.gp $T/f%d.caption $T/%s | cmp - "
+                 "$T/made; "
                  "cd $T; mv %s first; gnuplot f%d.gp",
-                 i, i, name, name, i);
+                 i, i, i, name, name, i);
         quiet(line);
         size_t size, again;
         char *a = read_all("first", &size), *b = read_all(name, &again);
@@ -289,8 +290,8 @@ static void without_gnuplot_the_table_and_the_script_are_made(void **state)
     assert_has(output, "gnuplot");
     assert_has(output, "PATH");
     quiet(
-        "cd $T; printf 'x.tsv\\nx.gp\\n' | cmp - made; cd none; gnuplot x.gp; "
-        "[ \"$(ls | tr '\\n' ' ')\" = 'x.gp x.svg x.tsv ' ]; rm -r $T/none");
+        "cd $T; printf 'x.tsv\\nx.gp\\nx.caption\\n' | cmp - made; cd none; gnuplot "
+        "x.gp; [ \"$(ls | tr '\\n' ' ')\" = 'x.caption x.gp x.svg x.tsv ' ]; rm -r $T/none");
 }
 
 static void gnuplots_own_words_are_passed_on(void **state)
@@ -310,7 +311,7 @@ static void wrong_requests_are_refused(void **state)
 {
     (void)state;
     refused("bsdf-plot lobe diffuse --wo 1,0 -o x.jpg", "\".jpg\"",
-            ".svg, .pdf or .png");
+            ".svg, .pdf, .png or .tex");
     refused("bsdf-plot lobe diffuse --wo 1,0 -o x", "no extension", ".svg");
     refused("bsdf-plot lobe diffuse --wo 1,0 -o .svg", "name before", ".svg");
     refused("bsdf-plot lobe diffuse --wo 1,0 -o none/x.svg", "none/x.svg",
