@@ -88,11 +88,12 @@ static void axis_set(struct figure *fig, const struct chart_axis *a, char which,
         decades(fig, a, which, bare, out);
         return;
     }
-    fprintf(fig->script,
-            "unset logscale %c; set %crange [%.12g:%.12g]\n"
-            "set %ctics autofreq %.10g nomirror %s scale 0.7,0.4 format \"%s\"\n",
-            which, which, a->lo, a->hi, which, a->step, out ? "out" : "in",
-            bare ? "" : fig->form->number);
+    fprintf(
+        fig->script,
+        "unset logscale %c; set %crange [%.12g:%.12g]\n"
+        "set %ctics autofreq %.10g nomirror %s scale 0.7,0.4 format \"%s\"\n",
+        which, which, a->lo, a->hi, which, a->step, out ? "out" : "in",
+        bare ? "" : fig->form->number);
 }
 
 static void marks(struct figure *fig, const struct chart *c)
@@ -206,6 +207,23 @@ void chart_draw(struct figure *fig, const struct chart *c)
         fprintf(out, "%s\n", c->also ? c->also : "");
     }
     fputs("unset arrow; unset label; unset colorbox\n", out);
+}
+
+void chart_column(struct chart *c, int i, int n, bool shared)
+{
+    const double left = CHART_LEFT + 4, right = 26;
+    const double gap = shared ? 26 : CHART_LEFT + 14;
+    const double wide = (FIGURE_PAGE - left - right - (n - 1) * gap) / n;
+    c->x0 = left + i * (wide + gap);
+    c->x1 = c->x0 + wide;
+    c->bare_y = shared && i > 0;
+}
+
+void chart_notes(struct figure *fig, double y, const char *const *line, int n)
+{
+    for (int i = 0; i < n; i++)
+        figure_label(fig, FIGURE_PAGE / 2., y - CHART_NOTE * (i + 0.5),
+                     "center", line[i]);
 }
 
 void chart_bar(struct figure *fig, double x0, double x1, double y,

@@ -74,6 +74,14 @@ struct chart {
 enum { CHART_BELOW = 52, CHART_LEFT = 78, CHART_ABOVE = 26 };
 void chart_draw(struct figure *fig, const struct chart *c);
 
+/** The frame's sides for column i of n across the page; with a shared axis of y
+ * only the first has room for its numbers. */
+void chart_column(struct chart *c, int i, int n, bool shared);
+
+/** Lines of notes, centred, from y downward, CHART_NOTE each. */
+enum { CHART_NOTE = 17 };
+void chart_notes(struct figure *fig, double y, const char *const *line, int n);
+
 /** A colour bar for maps drawn next, below their titles of x; y is its lower
  * edge, and it takes CHART_BAR_BELOW downward. */
 enum { CHART_BAR = 11, CHART_BAR_BELOW = 42 };

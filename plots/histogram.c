@@ -209,14 +209,13 @@ static void notes(struct figure *fig, const struct cells *h)
         }
     }
     const double percent = 100 / (double)h->samples;
-    snprintf(text, sizeof text,
-             "θ: angle of %s to the %s; φ′: its azimuth%s; cross: %s",
-             h->plane == CELLS_HALF ? "the half vector" : "ωᵢ",
-             h->side > 0 || h->plane == CELLS_HALF ? "normal"
-                                                   : "normal's opposite",
-             hypot(h->wo.x, h->wo.y) > 0 ? " from that of the mirror direction"
-                                         : "",
-             h->plane == CELLS_HALF ? "normal" : "mirror direction of ωₒ");
+    snprintf(
+        text, sizeof text,
+        "θ: angle of %s to the %s; φ′: its azimuth%s; cross: %s",
+        h->plane == CELLS_HALF ? "the half vector" : "ωᵢ",
+        h->side > 0 || h->plane == CELLS_HALF ? "normal" : "normal's opposite",
+        hypot(h->wo.x, h->wo.y) > 0 ? " from that of the mirror direction" : "",
+        h->plane == CELLS_HALF ? "normal" : "mirror direction of ωₒ");
     figure_label(fig, PAGE / 2., NOTES - 14, "center", text);
     const struct {
         const char *what;
