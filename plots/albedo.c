@@ -299,7 +299,7 @@ static void script_write(struct figure *fig, const struct loss *l)
     const double key_y = l->rough ? map_y + MAP + CHART_ABOVE + 16 : foot + 14;
     const double panel = key_y + (rows - 1) * 20 + 14 + CHART_BELOW;
     const struct chart_axis y =
-        chart_axis(0, fmax(l->most, 1e-3), 5, "albedo", "1");
+        chart_axis(0, fmax(l->most, 1), 5, "albedo", "1");
     bands_print(bsdf_bands(l->bsdf), names, sizeof names);
     snprintf(below, sizeof below, "ωₒ at φ = %.6g°;  %s", l->phi_deg, names);
     snprintf(note, sizeof note,

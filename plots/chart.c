@@ -88,12 +88,13 @@ static void axis_set(struct figure *fig, const struct chart_axis *a, char which,
         decades(fig, a, which, bare, out);
         return;
     }
+    const double room = 1e-7 * (a->hi - a->lo); /* for points on the edge */
     fprintf(
         fig->script,
         "unset logscale %c; set %crange [%.12g:%.12g]\n"
         "set %ctics autofreq %.10g nomirror %s scale 0.7,0.4 format \"%s\"\n",
-        which, which, a->lo, a->hi, which, a->step, out ? "out" : "in",
-        bare ? "" : fig->form->number);
+        which, which, a->lo - room, a->hi + room, which, a->step,
+        out ? "out" : "in", bare ? "" : fig->form->number);
 }
 
 static void marks(struct figure *fig, const struct chart *c)

@@ -265,7 +265,7 @@ static const char defaults[] =
     "set linetype 7 lc rgb \"#000000\" dt (18,4) lw 1.5\n"
     "set linetype 8 lc rgb \"#808080\" dt (2,5) lw 2\n"
     "set linetype 9 lc rgb \"#303030\" dt 1 lw 2.2\n"
-    "set linetype 10 lc rgb \"#707070\" dt (6,4) lw 1\n"
+    "set linetype 10 lc rgb \"#606060\" dt (14,9) lw 1\n"
     "set linetype 11 lc rgb \"#b8b8b8\" dt 1 lw 0.5\n"
     "heat = 'defined (0 \"#440154\", 1 \"#482878\", 2 \"#3e4a89\", 3 "
     "\"#31688e\", 4 \"#26828e\", 5 \"#1f9e89\", 6 \"#35b779\", 7 \"#6dcd59\", "

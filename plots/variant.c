@@ -36,6 +36,14 @@ struct bsdf *variant_new(const struct bsdf *b, const struct variant *v, int n,
 bool variant_albedo(const struct bsdf *b, struct vec3 wo, uint64_t seed,
                     struct estimate albedo[BANDS_MAX], struct err *err)
 {
+    struct estimate beside[BANDS_MAX];
+    return variant_energy(b, wo, seed, albedo, beside, err);
+}
+
+bool variant_energy(const struct bsdf *b, struct vec3 wo, uint64_t seed,
+                    struct estimate albedo[BANDS_MAX],
+                    struct estimate beside[BANDS_MAX], struct err *err)
+{
     struct plan plan = plan_default;
     struct subject s;
     plan.seed = seed;
@@ -44,8 +52,10 @@ bool variant_albedo(const struct bsdf *b, struct vec3 wo, uint64_t seed,
     if (!subject_init(&s, b, wo, &plan, err))
         return false;
     const struct energy *e = subject_energy(&s);
-    for (int i = 0; e && i < BANDS_MAX; i++)
+    for (int i = 0; e && i < BANDS_MAX; i++) {
         albedo[i] = e->albedo[i];
+        beside[i] = e->beside[i];
+    }
     subject_clear(&s);
     return e || err_set(err, "out of memory");
 }
@@ -60,6 +70,7 @@ void variant_weights(const struct bsdf *b, struct vec3 wo, uint64_t seed,
     const int bands = bsdf_bands(b)->count;
     struct bsdf_sample a[BATCH];
     double sum[BANDS_MAX] = { 0 }, square[BANDS_MAX] = { 0 };
+    double first[BANDS_MAX] = { 0 }; /* so that nothing cancels */
     for (uint64_t from = 0; from < n; from += BATCH) {
         const size_t m = n - from < BATCH ? (size_t)(n - from) : BATCH;
         subject_draw(&s, rng, from, m, a);
@@ -67,14 +78,16 @@ void variant_weights(const struct bsdf *b, struct vec3 wo, uint64_t seed,
             for (int k = 0; k < bands; k++) {
                 const double w =
                     a[i].weight.band[k] * subject_compression(&s, a[i].wi);
-                sum[k] += w;
-                square[k] += w * w;
+                first[k] = from + i > 0 ? first[k] : w;
+                sum[k] += w - first[k];
+                square[k] += (w - first[k]) * (w - first[k]);
             }
     }
     const double count = (double)n;
     for (int k = 0; k < bands; k++) {
         const double mean = sum[k] / count;
         const double variance = fmax(square[k] / count - mean * mean, 0);
-        albedo[k] = (struct estimate){ mean, sqrt(variance / count) };
+        albedo[k] =
+            (struct estimate){ first[k] + mean, sqrt(variance / count) };
     }
 }

@@ -24,7 +24,12 @@ struct bsdf *variant_new(const struct bsdf *b, const struct variant *v, int n,
 bool variant_albedo(const struct bsdf *b, struct vec3 wo, uint64_t seed,
                     struct estimate albedo[BANDS_MAX], struct err *err);
 
-/** The same from the mean weight of n samples, with its standard error, which
+/** Both the albedo and what of it is in no single direction. */
+bool variant_energy(const struct bsdf *b, struct vec3 wo, uint64_t seed,
+                    struct estimate albedo[BANDS_MAX],
+                    struct estimate beside[BANDS_MAX], struct err *err);
+
+/** The albedo from the mean weight of n samples, with its standard error, which
  * is quicker. */
 void variant_weights(const struct bsdf *b, struct vec3 wo, uint64_t seed,
                      uint64_t n, struct estimate albedo[BANDS_MAX]);
