@@ -69,7 +69,8 @@ static void decades(struct figure *fig, const struct chart_axis *a, char which,
     fprintf(out,
             "set logscale %c; set %crange [%.10g:%.10g]\n"
             "set %ctics nomirror %s scale 0.7,0.4 (",
-            which, which, a->lo, a->hi, which, outward ? "out" : "in");
+            which, which, a->lo * (1 - 1e-6), a->hi * (1 + 1e-6), which,
+            outward ? "out" : "in");
     for (int e = from; e <= to; e++) {
         char name[32];
         axis_unit(name, sizeof name, e, "");
