@@ -15,7 +15,7 @@
 #include "plots/table.h"
 #include "plots/variant.h"
 
-enum { ANGLES = 46, EXACT = 10, MAPS = 2, ROUGH = 16, TILTS = 15, CUTS = 4 };
+enum { ANGLES = 46, EXACT = 5, MAPS = 2, ROUGH = 16, TILTS = 15, CUTS = 4 };
 
 /* The last angle: at 90 degrees there is nothing. */
 static const double last_deg = 89.5;
@@ -47,7 +47,7 @@ static double angle_of(int i)
 
 static double exact_of(int i)
 {
-    return fmin(10. * i, 85);
+    return 20. * i;
 }
 
 static double tilt_of(int i)

@@ -199,7 +199,7 @@ static void table_write(FILE *out, const struct swatches *s)
 
 /* -- the picture ----------------------------------------------------------- */
 
-enum { NAMES = 150, STRIPS = 400, F0 = 404, LINES = 588, ROW = 27, HEAD = 58 };
+enum { NAMES = 150, STRIPS = 388, F0 = 393, LINES = 604, ROW = 27, HEAD = 58 };
 
 static void names(struct figure *fig, const struct swatches *s,
                   const struct swatch *page, double bottom)

@@ -15,7 +15,7 @@
 #include "plots/table.h"
 #include "plots/variant.h"
 
-enum { ANGLES = 46, EXACT = 10 };
+enum { ANGLES = 46, EXACT = 5 };
 /* Where the first is below this share of its largest value there is no ratio.
  */
 static const double ratio_floor = 1e-6;
@@ -37,7 +37,7 @@ static double angle_of(int i)
 
 static double exact_of(int i)
 {
-    return fmin(10. * i, 85);
+    return 20. * i;
 }
 
 static double mean_at(const struct trace *t, double theta_deg)
