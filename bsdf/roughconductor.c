@@ -458,6 +458,14 @@ static double facet_g1(const void *state, struct vec3 w)
     return 1 / (1 + facets_lambda(m->facets, w));
 }
 
+static void index_of(const void *state, struct spectrum *eta,
+                     struct spectrum *k)
+{
+    const struct roughconductor *m = state;
+    *eta = m->eta;
+    *k = m->k;
+}
+
 const struct bsdf_type type_roughconductor = {
     .name = "roughconductor",
     .about = "rough metal (Torrance-Sparrow, Smith)",
@@ -468,6 +476,7 @@ const struct bsdf_type type_roughconductor = {
     .pdf = pdf,
     .sample = sample,
     .init = init,
+    .index = index_of,
     .facet_d = facet_d,
     .facet_g1 = facet_g1,
     .eval_many = eval_many,

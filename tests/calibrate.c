@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "bsdf/cli.h"
+#include "bsdf/outfile.h"
 #include "tests/acceptance.h"
 #include "tests/calibration.h"
 #include "tests/publish.h"
@@ -27,11 +28,18 @@
  * uniform. */
 static const double false_alarm = 1e-3;
 
-enum { OPT_SEED = 1, OPT_ROUNDS, OPT_SAMPLES, OPT_PUBLISH, OPT_POWER };
+enum {
+    OPT_SEED = 1,
+    OPT_ROUNDS,
+    OPT_SAMPLES,
+    OPT_PUBLISH,
+    OPT_POWER,
+    OPT_P_VALUES
+};
 
 struct request {
     uint64_t seed, rounds, samples;
-    const char *publish;
+    const char *publish, *p_values;
     bool power;
 };
 
@@ -42,6 +50,8 @@ static const struct argp_option options[] = {
     { "samples", OPT_SAMPLES, "N", 0, "of a case; 50000", 0 },
     { "publish", OPT_PUBLISH, "FILE", 0,
       "put the tables between the marker lines of a file", 0 },
+    { "p-values", OPT_P_VALUES, "FILE", 0,
+      "write those that can be uniform, for bsdf-plot p-values", 0 },
     { "power", OPT_POWER, 0, 0, "what mistakes are caught, instead", 0 },
     { 0 },
 };
@@ -63,6 +73,9 @@ static error_t option(int key, char *arg, struct argp_state *state)
         break;
     case OPT_PUBLISH:
         r->publish = arg;
+        break;
+    case OPT_P_VALUES:
+        r->p_values = arg;
         break;
     case OPT_POWER:
         r->power = true;
@@ -214,6 +227,23 @@ static bool print_calibration(FILE *out, const struct calibration *c)
     return ok;
 }
 
+/* The values that can be uniform, a line each. */
+static bool write_p_values(const char *path, const struct calibration *c,
+                           struct err *err)
+{
+    struct outfile out;
+    if (!outfile_open(&out, path, err))
+        return false;
+    fprintf(out.stream, "# of sound models; seeds from %llu\nname\tp\tmodel\n",
+            (unsigned long long)c->seed);
+    for (int i = 0; i < c->rows; i++)
+        for (size_t k = 0; k < c->row[i].values; k++)
+            fprintf(out.stream, "%s, %s\t%.17g\t%s\n", c->row[i].check,
+                    c->row[i].part, c->row[i].value[k].uniform,
+                    c->spec[c->row[i].value[k].model]);
+    return outfile_close(&out, err);
+}
+
 static bool calibrate(FILE *out, const struct request *r, bool *ok,
                       struct err *err)
 {
@@ -224,9 +254,11 @@ static bool calibrate(FILE *out, const struct request *r, bool *ok,
                               .directions = 10,
                               .samples = r->samples,
                               .often = 8 };
-    const bool made = calibration_make(&c, isatty(2) ? progress : NULL, err);
+    bool made = calibration_make(&c, isatty(2) ? progress : NULL, err);
     if (made)
         *ok = print_calibration(out, &c);
+    if (made && r->p_values)
+        made = write_p_values(r->p_values, &c, err);
     calibration_clear(&c);
     return made;
 }
