@@ -47,7 +47,7 @@ LANGUAGE := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno \
 COMPILE   = $(CC) $(LANGUAGE) $(FLAGS) $(WARN) $(CPPFLAGS) $(CFLAGS)
 LIBS     := -lxml2 -lgsl -lgslcblas -lyaml -ljansson -ldl -lm
 # What the integrator needs besides; the other programs do not link it.
-INTEGRATOR_LIBS := -lembree3 -lassimp -llzma
+INTEGRATOR_LIBS := -lembree3 -lassimp -lOpenEXRCore -lpng -llzma
 
 # `make V=1` shows the commands.
 SAY := @printf '  %-5s %s\n'
@@ -163,6 +163,8 @@ library libxml/xmlwriter.h $(XML2),-lxml2 libxml2-dev
 library lzma.h             -llzma               liblzma-dev
 library embree3/rtcore.h   -lembree3            libembree-dev
 library assimp/cimport.h   -lassimp             libassimp-dev
+library OpenEXR/openexr.h  -lOpenEXRCore        libopenexr-dev
+library png.h              -lpng                libpng-dev
 library cmocka.h           -lcmocka             libcmocka-dev
 library omp.h              -fopenmp             $(if $(findstring clang,$(CC)),libomp-dev,gcc)
 tool    gnuplot            -                    gnuplot-nox

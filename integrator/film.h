@@ -7,7 +7,7 @@
 #ifndef INTEGRATOR_FILM_H
 #define INTEGRATOR_FILM_H
 
-#include <stddef.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "bsdf/err.h"
@@ -32,44 +32,78 @@ struct film_note {
     const char *name, *value;
 };
 
-/** All 0; NULL and the reason where a side is not in [1, 65536], the product is
- * above 2^28, or memory is out. Owned by the caller. */
+enum { FILM_SIDE_MAX = 65536, FILM_PIXELS_MAX = 1 << 28 };
+
+/** Whether a picture may be of that size. */
+bool film_size_ok(int64_t width, int64_t height);
+
+/** All 0; NULL and the reason where film_size_ok is false or memory is out.
+ * Owned by the caller. */
 struct film *film_new(int width, int height, struct err *err);
 void film_free(struct film *f); /* NULL is fine */
 
 /** Luminance of linear R, G and B: 0.2126, 0.7152, 0.0722 (ITU-R BT.709). */
 double film_luminance(const float rgb[3]);
 
-/** Writes all of it: channels R, G, B, variance.R ..., variance.Y, count,
- * depth, normal.X ..., albedo.R ..., float but for the count, ZIP; notes are
- * string attributes, the last has no name.  Whole or not at all. */
+/* -- OpenEXR ---------------------------------------------------------------
+ *
+ *   R G B              the mean, which every viewer shows
+ *   Z                  depth
+ *   albedo.R .G .B     layers of the first hit
+ *   normal.X .Y .Z
+ *   variance.R .G .B   of the mean; .Y is that of its luminance
+ *   count              of samples, 32-bit whole numbers; the rest are float
+ *
+ * R, G, B and Z are names that the format's own documentation reserves for
+ * these; LAYER.CHANNEL is its way of grouping the others.  Scan lines, ZIP.
+ */
+
+/** Writes all of it, every bit of every number; notes are string attributes,
+ * the last has no name (NULL notes: none).  The same film and notes give the
+ * same bytes.  Whole or not at all (bsdf/outfile.h); a pipe cannot be
+ * written to. */
 bool film_write_exr(const struct film *f, const char *path,
                     const struct film_note *notes, struct err *err);
 
-/** Reads what film_write_exr wrote; R, G and B must be there, the rest is NaN
- * or 0 where it is not. Any file of another size or nature is an error. */
+/** Reads a single picture in scan lines of any compression, its data window
+ * the display window.  R, G and B must be there, float or half; what else is
+ * not there is NaN if a variance, else 0.  Owned by the caller; NULL and the
+ * reason for any other file, of any size or nature: what a header claims is
+ * held against the file's size before room is made for it. */
 struct film *film_read_exr(const char *path, struct err *err);
 
+/* -- PNG -------------------------------------------------------------------
+ *
+ * 8-bit R, G and B.  A pixel with a channel that is not a number is magenta, so
+ * that nobody overlooks it; infinities are clamped like other numbers.
+ */
+
 enum film_tone {
-    FILM_SRGB,  /* the sRGB curve (IEC 61966-2-1), rounded */
-    FILM_COURSE /* (sqrt(2) L)^(1/2.2), truncated */
+    FILM_SRGB,  /* the sRGB curve (IEC 61966-2-1), rounded; marked as sRGB */
+    FILM_COURSE /* (sqrt(2) L)^(1/2.2), truncated; marked as gamma 1/2.2 */
 };
 
-/** The means as 8-bit PNG, clamped; exposure is a factor. */
+/** The means, times exposure, clamped. */
 bool film_write_png(const struct film *f, const char *path, enum film_tone tone,
                     double exposure, struct err *err);
 
-/** The rate map: r = count / samples, blue to green up to 1/2, then green to
- * red, linear, 8 bits. */
+/** The rate map: r = count / samples (at least 1), blue at 0 to green at 1/2
+ * to red at 1, linear, truncated, no curve. */
 bool film_write_rate(const struct film *f, const char *path, uint64_t samples,
                      struct err *err);
 
-/** 8-bit RGB from a PNG, three bytes a pixel. */
+/** Three bytes a pixel, row by row from the upper left one. */
 struct png {
     int width, height;
-    unsigned char *rgb; /* owned */
+    unsigned char *rgb; /* owned; free() */
 };
+
+/** Reads a PNG of any kind as 8-bit R, G, B; what is transparent lies on black.
+ * Limits and claims as in film_read_exr. */
 bool png_read(struct png *png, const char *path, struct err *err);
-bool png_write(const struct png *png, const char *path, struct err *err);
+
+/** srgb: marked as such, else as gamma 1/2.2. Whole or not at all. */
+bool png_write(const struct png *png, const char *path, bool srgb,
+               struct err *err);
 
 #endif

@@ -99,9 +99,11 @@ static struct light_sample in_cone(const struct shape *a, struct vec3 from,
     const struct vec3 local = { sine * cos(2 * PI * v), sine * sin(2 * PI * v),
                                 1 - down };
     const double half2 = a->radius * a->radius - d * d * sine2;
+    const struct vec3 wi = frame_to_world(&frame, local);
+    const double far = d * local.z - sqrt(fmax(0, half2));
     return (struct light_sample){
-        .wi = frame_to_world(&frame, local),
-        .distance = d * local.z - sqrt(fmax(0, half2)),
+        .wi = wi,
+        .point = vec3_add(from, vec3_scale(far, wi)),
         .pdf = 1 / (2 * PI * versine),
     };
 }
@@ -114,7 +116,7 @@ static struct light_sample toward(struct on_light at, double area,
     const struct vec3 to = vec3_minus(at.point, from);
     const double d2 = vec3_dot(to, to), d = sqrt(d2);
     const double along = -vec3_dot(to, at.normal); /* d times the cosine */
-    struct light_sample out = { .distance = d };
+    struct light_sample out = { .point = at.point };
     if (!(d2 > 0) || !(both_sides ? along != 0 : along > 0))
         return out;
     out.wi = vec3_scale(1 / d, to);
@@ -149,7 +151,7 @@ static struct light_sample by_direction(const struct light *light, double u,
     const double r = sqrt(fmax(0, 1 - y * y));
     return (struct light_sample){
         .wi = { r * sin(2 * PI * v), y, r * cos(2 * PI * v) },
-        .distance = INFINITY,
+        .infinite = true,
         .pdf = half ? 1 / (2 * PI) : 1 / (4 * PI),
         .radiance = light->radiance,
     };
@@ -158,7 +160,7 @@ static struct light_sample by_direction(const struct light *light, double u,
 static struct light_sample by_picture(const struct environment *e, double u,
                                       double v)
 {
-    struct light_sample out = { .distance = INFINITY };
+    struct light_sample out = { .infinite = true };
     out.wi = environment_sample(e, u, v, &out.pdf);
     out.radiance = environment_radiance(e, out.wi);
     return out;
@@ -172,7 +174,7 @@ static struct light_sample of_point(const struct light *light, struct vec3 from)
         return (struct light_sample){ .pdf = 0 };
     return (struct light_sample){
         .wi = vec3_scale(1 / d, to),
-        .distance = d,
+        .point = light->position,
         .pdf = 1,
         .radiance = spectrum_scale(1 / (d * d), light->radiance),
         .delta = true,

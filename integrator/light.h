@@ -11,7 +11,8 @@
 
 struct light_sample {
     struct vec3 wi;           /* unit, toward the light */
-    double distance;          /* to it; infinite for a background */
+    struct vec3 point;        /* of the light */
+    bool infinite;            /* a background, which has no points */
     double pdf;               /* [1/sr]; 1 where delta is set */
     struct spectrum radiance; /* from there; for a point, intensity over
                                  distance^2 */

@@ -26,6 +26,7 @@ enum {
     OPT_RR_DEPTH,
     OPT_RR_PROBABILITY,
     OPT_SEED,
+    OPT_SAMPLER,
     OPT_COMPAT,
     OPT_LENIENT,
     OPT_RGB,
@@ -78,6 +79,11 @@ static const struct argp_option options[] = {
       0 },
     { "exposure", OPT_EXPOSURE, "F", 0, "factor for the PNG; 1", 0 },
     { "seed", OPT_SEED, "S", 0, "of the random numbers; 1", 0 },
+    { "sampler", OPT_SAMPLER, "KIND", 0,
+      "independent (if not given), or ldsampler: less noise, and standard "
+      "errors "
+      "that are mostly too large",
+      0 },
     { "threads", 't', "N", 0,
       "as many as there are, if not given; the picture does not depend on it",
       0 },
@@ -254,6 +260,8 @@ static bool define(struct request *r, const char *arg, struct err *err)
 static bool other(struct request *r, int key, char *arg,
                   struct argp_state *state, struct err *err)
 {
+    static const char *const samplers[] = { "independent", "ldsampler", NULL };
+    int choice = 0;
     switch (key) {
     case 's':
         r->has_samples = true;
@@ -285,6 +293,11 @@ static bool other(struct request *r, int key, char *arg,
         return define(r, arg, err);
     case OPT_SEED:
         return cli_count(&r->render.seed, "--seed", arg, 0, INT64_MAX, err);
+    case OPT_SAMPLER:
+        if (!word(&choice, "--sampler", arg, samplers, err))
+            return false;
+        r->render.sampler = (enum sampler_kind)choice;
+        return true;
     case OPT_EXPOSURE:
         return cli_number(&r->exposure, "--exposure", arg, 1e-9, 1e9, err);
     case OPT_COMPAT:

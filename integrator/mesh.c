@@ -73,13 +73,6 @@ bool mesh_check(const struct mesh *m, const char *name, struct err *err)
             floats_check(m->normal, m->vertices, name, "the normal", err));
 }
 
-struct vec3 mesh_vertex(const struct mesh *m, size_t triangle, int corner)
-{
-    const float *p =
-        m->xyz + 3 * (size_t)m->index[3 * triangle + (size_t)corner];
-    return (struct vec3){ (double)p[0], (double)p[1], (double)p[2] };
-}
-
 struct vec3 mesh_cross(const struct mesh *m, size_t triangle)
 {
     const struct vec3 a = mesh_vertex(m, triangle, 0);

@@ -149,7 +149,7 @@ static struct spectrum from_light(const struct vertex *v, int light, double a,
     if (p->direct == PATH_MIS && !l.delta && light_can_be_hit(v->scene, light))
         weight *= balance(p->light_samples, l.pdf, density(v, wi));
     const struct ray ray =
-        trace_to(v->scene, hit->point, hit->normal, l.wi, l.distance);
+        l.infinite ? trace_from(hit, l.wi) : trace_to(hit, l.wi, l.point);
     ++*v->rays;
     if (!trace_blocked(v->scene, &ray))
         add(&sum, weight, f, l.radiance);
@@ -163,7 +163,7 @@ static struct spectrum emission(const struct scene *s, const struct hit *hit,
     struct spectrum sum = { { 0 } };
     const struct spectrum one = spectrum_of(BANDS_MAX, 1);
     if (there)
-        return hit->emits ? hit->radiance : sum;
+        return hit->emits ? hit->surface->radiance : sum;
     for (int i = 0; i < light_count(s); i++)
         add(&sum, 1, one, light_background(s, i, dir));
     return sum;
@@ -176,8 +176,7 @@ static struct spectrum from_hemisphere(const struct vertex *v, struct vec3 u)
     if (largest(s.weight) == 0)
         return sum;
     const struct vec3 dir = frame_to_world(&v->hit.shading, s.wi);
-    const struct ray ray =
-        trace_from(v->scene, v->hit.point, v->hit.normal, dir);
+    const struct ray ray = trace_from(&v->hit, dir);
     struct hit hit;
     ++*v->rays;
     const bool there = trace_hit(v->scene, &ray, &hit);
@@ -244,10 +243,11 @@ static void see(const struct scene *s, const struct path_settings *p,
                 struct spectrum *sum)
 {
     if (hit) {
-        const bool found = hit->emits && (by->alone || !hit->unsampled);
+        const bool found =
+            hit->emits && (by->alone || !hit->surface->unsampled);
         if (found)
             add(sum, emission_weight(s, p, by, hit->light, ray->dir, hit), beta,
-                hit->radiance);
+                hit->surface->radiance);
         return;
     }
     for (int i = 0; i < light_count(s); i++) {
@@ -285,7 +285,10 @@ struct path path_trace(const struct scene *s, const struct path_settings *p,
                        int x, int y, struct sampler *sampler)
 {
     struct path out = { .rays = 0 };
-    struct vertex v = { .scene = s, .settings = p, .rays = &out.rays };
+    struct vertex v; /* the hit is filled by rays, and large */
+    v.scene = s;
+    v.settings = p;
+    v.rays = &out.rays;
     struct ray ray = camera_sample(s, x, y, sampler);
     struct chosen by = { .alone = true };
     struct spectrum beta = spectrum_of(scene_bands(s)->count, 1);
@@ -328,8 +331,7 @@ struct path path_trace(const struct scene *s, const struct path_settings *p,
                       compression, &beta))
             break;
         by = (struct chosen){ next_one.delta, next_one.pdf, v.hit.point };
-        ray = trace_from(s, v.hit.point, v.hit.normal,
-                         frame_to_world(&v.hit.shading, next_one.wi));
+        ray = trace_from(&v.hit, frame_to_world(&v.hit.shading, next_one.wi));
     }
     return out;
 }

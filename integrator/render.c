@@ -115,7 +115,8 @@ static void samples(const struct job *job, int x, int y, uint64_t more,
     if (a->done)
         return;
     /* Wide enough for any picture, whose sides are below 2^16. */
-    sampler_start(sampler, set->seed, (uint64_t)y << 32 | (uint64_t)x);
+    sampler_start(sampler, set->sampler, set->seed,
+                  (uint64_t)y << 32 | (uint64_t)x);
     for (uint64_t i = 0; i < more && a->n < set->samples; i++) {
         sampler_go(sampler, a->n);
         struct path p = path_trace(job->scene, &set->path, x, y, sampler);

@@ -22,6 +22,7 @@
 struct render_settings {
     struct path_settings path;
     uint64_t samples; /* a pixel, at least 1, at most 2^32 */
+    enum sampler_kind sampler;
     uint64_t seed;
     uint64_t batch;          /* of adaptive sampling */
     double tolerance;        /* 0: every pixel gets all its samples */

@@ -109,8 +109,11 @@ int scene_add_bsdf(struct scene *s, const char *spec, struct err *err)
     return (int)s->bsdfs++;
 }
 
+/* Of the shape that was added last, too. */
 static void box_add(struct scene *s, struct vec3 p)
 {
+    struct shape *a = &s->shape[s->shapes - 1];
+    a->reach = fmax(a->reach, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
     s->lo = (struct vec3){ fmin(s->lo.x, p.x), fmin(s->lo.y, p.y),
                            fmin(s->lo.z, p.z) };
     s->hi = (struct vec3){ fmax(s->hi.x, p.x), fmax(s->hi.y, p.y),

@@ -24,6 +24,7 @@ struct shape {
     struct vec3 normal; /* of a disk or rectangle, unit */
     double radius;      /* of a sphere */
     double area;
+    double reach;      /* its largest coordinate */
     double *cumulated; /* a light's triangles' areas; mesh.triangles of them */
 };
 
@@ -57,7 +58,6 @@ struct scene {
 
     RTCDevice device;
     RTCScene embree;
-    double reach;         /* the largest coordinate of shapes and camera */
     int64_t bytes_embree; /* as Embree reports it */
 };
 

@@ -4,9 +4,10 @@
  * along, so that what is intersected here loses nothing.
  *
  * Where rays start: a point of a triangle is good to about 2^-53 of its
- * coordinates, but becomes 2^-24 of them when Embree gets it, and its own
- * intersection is off by some of those.  2^-19 of the largest coordinate of the
- * scene leaves room for 32 of them.
+ * coordinates, but to 2^-24 when Embree gets it, and its own intersection is
+ * off by some 2^-24 of the mesh's coordinates.  2^-19 of the largest of the
+ * mesh's leaves room for 32 of them; spheres and disks, intersected in double,
+ * need room for other shapes' sake alone.
  */
 #include "integrator/trace.h"
 
@@ -164,12 +165,13 @@ bool scene_commit(struct scene *s, struct err *err)
         return err_set(err, "the scene has no camera");
     const struct vec3 eye =
         affine_point(&s->camera.to_world, (struct vec3){ 0, 0, 0 });
-    s->reach = fmax(fmax(largest(s->lo), largest(s->hi)), largest(eye));
-    if (!(s->reach < 1e15))
+    const double reach =
+        fmax(fmax(largest(s->lo), largest(s->hi)), largest(eye));
+    if (!(reach < 1e15))
         return err_set(err,
                        "the scene reaches to %g: expected coordinates below "
                        "1e15",
-                       s->reach);
+                       reach);
     s->device = rtcNewDevice(NULL);
     if (!s->device)
         return err_set(err, "Embree: no device (error %d)",
@@ -273,13 +275,13 @@ bool trace_hit(const struct scene *s, const struct ray *ray, struct hit *hit)
         on_sphere(a, ray, hit->distance = c.distance, hit);
     else
         on_disk(a, ray, hit->distance = c.distance, hit);
+    hit->hair = hair * a->reach;
     hit->bsdf = a->bsdf;
     hit->claims = &a->claims;
     hit->light = a->light;
     hit->emits = a->flags & SHAPE_EMITS &&
                  (a->surface.both_sides || vec3_dot(hit->normal, ray->dir) < 0);
-    hit->radiance = a->surface.radiance;
-    hit->unsampled = a->surface.unsampled;
+    hit->surface = &a->surface;
     return true;
 }
 
@@ -292,20 +294,26 @@ bool trace_blocked(const struct scene *s, const struct ray *ray)
     return r.tfar == -INFINITY;
 }
 
-struct ray trace_from(const struct scene *s, struct vec3 point,
-                      struct vec3 normal, struct vec3 dir)
+struct ray trace_from(const struct hit *hit, struct vec3 dir)
 {
-    const double off = copysign(hair * s->reach, vec3_dot(dir, normal));
-    return (struct ray){ .origin = vec3_add(point, vec3_scale(off, normal)),
+    const double off = copysign(hit->hair, vec3_dot(dir, hit->normal));
+    return (struct ray){ .origin =
+                             vec3_add(hit->point, vec3_scale(off, hit->normal)),
                          .dir = dir,
                          .near = 0,
                          .far = INFINITY };
 }
 
-struct ray trace_to(const struct scene *s, struct vec3 point,
-                    struct vec3 normal, struct vec3 dir, double distance)
+/* Aimed anew from where it starts: a tangent of a sphere that is moved by a
+ * hair enters it much earlier. */
+struct ray trace_to(const struct hit *hit, struct vec3 dir, struct vec3 point)
 {
-    struct ray r = trace_from(s, point, normal, dir);
-    r.far = fmax(0, distance - 4 * hair * s->reach);
+    struct ray r = trace_from(hit, dir);
+    const struct vec3 to = vec3_minus(point, r.origin);
+    const double d = vec3_length(to);
+    const double last = hair * (largest(point) + 3 * d);
+    if (d > 0)
+        r.dir = vec3_scale(1 / d, to);
+    r.far = fmax(0, d - last - hit->hair);
     return r;
 }

@@ -13,13 +13,13 @@ struct hit {
     double distance;
     struct vec3 point;
     struct vec3 normal;   /* of the surface itself, unit */
+    double hair;          /* how far off the surface rays start */
     struct frame shading; /* about the interpolated normal */
     const struct bsdf *bsdf;
     const struct bsdf_claims *claims; /* the BSDF's */
-    struct spectrum radiance;         /* emitted against the ray */
-    int light; /* number of the light that was hit, or -1 */
-    bool emits;
-    bool unsampled; /* surface.unsampled */
+    const struct surface *surface;
+    int light;  /* number of the light that was hit, or -1 */
+    bool emits; /* against the ray */
 };
 
 /** Whether a ray meets something, and what. */
@@ -29,13 +29,11 @@ bool trace_hit(const struct scene *s, const struct ray *ray, struct hit *hit);
  * and end a hair away from the surface. */
 bool trace_blocked(const struct scene *s, const struct ray *ray);
 
-/** The ray from a hit, or from the surface at a point with that normal, toward
- * dir; it starts off the surface, on the side that it goes to. */
-struct ray trace_from(const struct scene *s, struct vec3 point,
-                      struct vec3 normal, struct vec3 dir);
+/** The ray from a hit toward dir; it starts a hair off the surface, on the side
+ * that it goes to. */
+struct ray trace_from(const struct hit *hit, struct vec3 dir);
 
-/** The same that ends before a distance, a hair before it. */
-struct ray trace_to(const struct scene *s, struct vec3 point,
-                    struct vec3 normal, struct vec3 dir, double distance);
+/** The same that goes to a point and ends a hair before it. */
+struct ray trace_to(const struct hit *hit, struct vec3 dir, struct vec3 point);
 
 #endif
