@@ -109,87 +109,102 @@ static const char dae[] =
                                                                         "glass"
                                                                         ">")) "</library_effects>\n<library_materials>" MATERIAL("matt",
                                                                                                                                  "matt-fx")
-                                                        MATERIAL("glow", "glow-"
-                                                                         "fx") MATERIAL(
-                                                            "metal",
-                                                            "metal-fx") MATERIAL("glass",
-                                                                                 "glass-fx") "</library_materials>\n<library_geometries>\n" QUAD("floor",
-                                                                                                                                                 "-1 -1 0 1 -1 0 1 1 0 -1 1 0")
-                                                            QUAD("light", "-.3 "
-                                                                          ".4 "
-                                                                          "1."
-                                                                          "49 "
-                                                                          ".3 "
-                                                                          ".4 "
-                                                                          "1."
-                                                                          "49 "
-                                                                          ".3 "
-                                                                          "-.4 "
-                                                                          "1."
-                                                                          "49 "
-                                                                          "-.3 "
-                                                                          "-.4 "
-                                                                          "1."
-                                                                          "49") "<geometry id=\"ball\">" CGL(
-                                                                "<sphere><"
-                                                                "radius>.3</"
-                                                                "radius></"
-                                                                "sphere>") "</"
-                                                                           "geo"
+                                                        MATERIAL(
+                                                            "glow",
+                                                            "glow-"
+                                                            "fx") MATERIAL("met"
+                                                                           "al",
                                                                            "met"
-                                                                           "ry>"
-                                                                           "</"
-                                                                           "lib"
-                                                                           "rar"
-                                                                           "y_"
-                                                                           "geo"
-                                                                           "met"
-                                                                           "rie"
-                                                                           "s>"
-                                                                           "\n"
-                                                                           "<li"
-                                                                           "bra"
-                                                                           "ry_"
-                                                                           "vis"
-                                                                           "ual"
-                                                                           "_sc"
-                                                                           "ene"
-                                                                           "s><"
-                                                                           "vis"
-                                                                           "ual"
-                                                                           "_sc"
-                                                                           "ene"
-                                                                           " id"
-                                                                           "=\""
-                                                                           "all"
-                                                                           "\">"
-                                                                           "\n" NODE(
-                                                                               "eye-node",
-                                                                               "-1 0 0 0 0 0 1 3 0 1 0 0 0 0 0 1",
-                                                                               "<instance_camera url=\"#eye\"/>")
-                                                                               NODE(
-                                                                                   "lamp-node",
-                                                                                   "0.6 0 0 0 0 0.8 0 0 0 0 1 1.49 0 0 0 1",
-                                                                                   "<instance_light url=\"#lamp\"/>")
-                                                                                   NODE(
-                                                                                       "floor-node",
-                                                                                       "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1",
-                                                                                       GEOMETRY(
-                                                                                           "floor",
-                                                                                           "matt"))
-                                                                                       NODE(
-                                                                                           "light-node",
-                                                                                           "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1",
-                                                                                           GEOMETRY(
-                                                                                               "light",
-                                                                                               "glow"))
-                                                                                           NODE(
-                                                                                               "ball-node",
-                                                                                               "2 0 0 .1 0 2 0 .2 0 0 2 .6 0 0 0 1",
-                                                                                               GEOMETRY(
-                                                                                                   "ball",
-                                                                                                   "metal")) "</visual_scene></library_visual_scenes>\n"
-                                                                                                             "<scene><instance_visual_scene url=\"#all\"/></scene>\n</COLLADA>\n";
+                                                                           "al-"
+                                                                           "fx")
+                                                            MATERIAL("glass", "glass-fx") "</library_materials>\n<library_geometries>\n" QUAD(
+                                                                "floor",
+                                                                "-1 -1 0 1 -1 "
+                                                                "0 1 1 0 -1 1 "
+                                                                "0")
+                                                                QUAD(
+                                                                    "light",
+                                                                    "-.3 "
+                                                                    ".4 "
+                                                                    "1."
+                                                                    "49 "
+                                                                    ".3 "
+                                                                    ".4 "
+                                                                    "1."
+                                                                    "49 "
+                                                                    ".3 "
+                                                                    "-.4 "
+                                                                    "1."
+                                                                    "49 "
+                                                                    "-.3 "
+                                                                    "-.4 "
+                                                                    "1."
+                                                                    "49") "<geo"
+                                                                          "metr"
+                                                                          "y "
+                                                                          "id="
+                                                                          "\"ba"
+                                                                          "ll\""
+                                                                          ">" CGL(
+                                                                              "<sphere><"
+                                                                              "radius>.3</"
+                                                                              "radius></"
+                                                                              "sphere>") "</"
+                                                                                         "geo"
+                                                                                         "met"
+                                                                                         "ry>"
+                                                                                         "</"
+                                                                                         "lib"
+                                                                                         "rar"
+                                                                                         "y_"
+                                                                                         "geo"
+                                                                                         "met"
+                                                                                         "rie"
+                                                                                         "s>"
+                                                                                         "\n"
+                                                                                         "<li"
+                                                                                         "bra"
+                                                                                         "ry_"
+                                                                                         "vis"
+                                                                                         "ual"
+                                                                                         "_sc"
+                                                                                         "ene"
+                                                                                         "s><"
+                                                                                         "vis"
+                                                                                         "ual"
+                                                                                         "_sc"
+                                                                                         "ene"
+                                                                                         " id"
+                                                                                         "=\""
+                                                                                         "all"
+                                                                                         "\">"
+                                                                                         "\n" NODE(
+                                                                                             "eye-node",
+                                                                                             "-1 0 0 0 0 0 1 3 0 1 0 0 0 0 0 1",
+                                                                                             "<instance_camera url=\"#eye\"/>")
+                                                                                             NODE(
+                                                                                                 "lamp-node",
+                                                                                                 "0.6 0 0 0 0 0.8 0 0 0 0 1 1.49 0 0 0 1",
+                                                                                                 "<instance_light url=\"#lamp\"/>")
+                                                                                                 NODE(
+                                                                                                     "floor-node",
+                                                                                                     "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1",
+                                                                                                     GEOMETRY(
+                                                                                                         "floor",
+                                                                                                         "matt"))
+                                                                                                     NODE(
+                                                                                                         "light-node",
+                                                                                                         "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1",
+                                                                                                         GEOMETRY(
+                                                                                                             "light",
+                                                                                                             "glow"))
+                                                                                                         NODE(
+                                                                                                             "ball-node",
+                                                                                                             "2 0 0 .1 0 2 0 .2 0 0 2 .6 0 0 0 1",
+                                                                                                             GEOMETRY(
+                                                                                                                 "ball",
+                                                                                                                 "metal")) "</visual_scene></library_visual_scenes>\n"
+                                                                                                                           "<scene><instance_visual_scene url=\"#all\"/></scene>\n</COLLADA>\n";
 
 static const char xml[] =
     "<scene version=\"3.0.0\">\n"
@@ -454,12 +469,12 @@ static void matrices_of_fifteen_numbers_are_named(void **state)
 {
     (void)state;
     dae_refused("-1 0 0 0 0 0 1 3 0 1 0 0 0 0 0 1",
-                "-1 0 0 0 0 0 1 3 0 1 0 0 0 0 1", ":30: <matrix>",
+                "-1 0 0 0 0 0 1 3 0 1 0 0 0 0 1", ":29: <matrix>",
                 "it has 15 numbers", "expected 16");
     dae_refused("-1 0 0 0 0 0 1 3 0 1 0 0 0 0 0 1",
                 "-1 0 0 0 0 0 1 3 0 1 0 0 0 0 0 1 7 7", "<matrix>",
                 "it has 18 numbers", "expected 16");
-    dae_refused("-1 0 0 0 0 0 1 3", "-1 0 0 0 0 zero 1 3", ":30: <matrix>",
+    dae_refused("-1 0 0 0 0 0 1 3", "-1 0 0 0 0 zero 1 3", ":29: <matrix>",
                 "number 6 is \"zero\"", "expected a finite number");
     dae_refused("0 1 0 0 0 0 0 1</matrix>", "0 1 0 0 0 0 0 2</matrix>",
                 "<matrix>", "the last row is 0 0 0 2", "expected 0 0 0 1");
@@ -559,8 +574,8 @@ static void broken_meshes_are_named(void **state)
                 "expected a finite number");
     dae_refused("-1 -1 0 1 -1 0 1", "-1 1e999 0 1 -1 0 1", "<float_array",
                 "number 2 is \"1e999\"", "expected a finite number");
-    dae_refused("-1 -1 0 1 -1 0 1", "-1 1e300 0 1 -1 0 1", "<polylist",
-                "a coordinate of vertex 0 is inf", "expected a finite number");
+    dae_refused("-1 -1 0 1 -1 0 1", "-1 1e300 0 1 -1 0 1", "<float_array",
+                "number 2 is 1e+300", "a float can hold");
     dae_refused("count=\"12\"", "count=\"3000000\"", "<float_array",
                 "count=\"3000000\"", "there are 12 numbers");
     dae_refused("count=\"4\"", "count=\"1000000\"", "<accessor>",
@@ -725,8 +740,8 @@ static void bombs_stay_small(void **state)
         "<!ENTITY g \"&f;&f;&f;&f;&f;&f;&f;&f;&f;&f;\">"
         "<!ENTITY h \"&g;&g;&g;&g;&g;&g;&g;&g;&g;&g;\">]>\n"
         "<COLLADA>&h;</COLLADA>";
-    assert_small(written("entities.dae", entities, sizeof entities - 1), "bomb",
-                 1 << 10);
+    assert_small(written("entities.dae", entities, sizeof entities - 1),
+                 "not taken", 8 << 10);
     static const char file[] = "<!DOCTYPE scene [<!ENTITY a SYSTEM "
                                "\"/etc/passwd\">]><scene>&a;</scene>";
     refused_at(written("file.xml", file, sizeof file - 1), "file.xml:1",
@@ -740,7 +755,7 @@ static void bombs_stay_small(void **state)
                 i - 1, i - 1, i - 1);
     strcat(text, "<shape type=\"$a19\"/></scene>");
     assert_small(written("defaults.xml", text, strlen(text)),
-                 "more than 1023 characters", 1 << 10);
+                 "more than 1023 characters", 8 << 10);
 }
 
 static void deep_files_are_refused(void **state)
@@ -1090,7 +1105,7 @@ static void broken_mesh_files_are_named(void **state)
                    "float z\nelement face 1\nproperty list uchar int "
                    "vertex_indices\nend_header\n1234567890";
     written("none.ply", claim, sizeof claim - 1);
-    assert_small(path, "claimed", 1 << 10);
+    assert_small(path, "claimed", 8 << 10);
 }
 
 /* Every byte that a mutation can touch, and what is left of files: nothing may
