@@ -27,12 +27,20 @@
  * uniform. */
 static const double false_alarm = 1e-3;
 
-enum { OPT_SEED = 1, OPT_ROUNDS, OPT_SAMPLES, OPT_PUBLISH, OPT_POWER };
+enum {
+    OPT_SEED = 1,
+    OPT_ROUNDS,
+    OPT_SAMPLES,
+    OPT_PUBLISH,
+    OPT_POWER,
+    OPT_ONLY
+};
 
 struct request {
     uint64_t seed, rounds, samples;
     const char *publish;
     bool power;
+    unsigned parts; /* of the power; 0 for all */
 };
 
 static const struct argp_option options[] = {
@@ -43,8 +51,21 @@ static const struct argp_option options[] = {
     { "publish", OPT_PUBLISH, "FILE", 0,
       "put the tables between the marker lines of a file", 0 },
     { "power", OPT_POWER, 0, 0, "what mistakes are caught, instead", 0 },
+    { "only", OPT_ONLY, "PART", 0,
+      "of the power: sound, masses, mistakes or threads; may be repeated", 0 },
     { 0 },
 };
+
+static bool part_of(unsigned *parts, const char *name, struct err *err)
+{
+    for (int i = 0; i < ACCEPTANCE_PARTS; i++)
+        if (strcmp(name, acceptance_parts[i]) == 0) {
+            *parts |= 1U << i;
+            return true;
+        }
+    return err_set(
+        err, "--only %s: expected sound, masses, mistakes or threads", name);
+}
 
 static error_t option(int key, char *arg, struct argp_state *state)
 {
@@ -66,6 +87,14 @@ static error_t option(int key, char *arg, struct argp_state *state)
         break;
     case OPT_POWER:
         r->power = true;
+        break;
+    case OPT_ONLY:
+        ok = part_of(&r->parts, arg, &err);
+        break;
+    case ARGP_KEY_END:
+        if (r->parts && (!r->power || r->publish))
+            argp_error(state, "--only goes with --power, and without --publish,"
+                              " as it would leave out the other tables");
         break;
     case ARGP_KEY_ARG:
         argp_usage(state);
@@ -262,6 +291,7 @@ static void progress_of(const char *what, size_t done, size_t of)
 static bool power(FILE *out, const struct request *r, bool *ok, struct err *err)
 {
     const struct acceptance a = {
+        .parts = r->parts ? r->parts : (1U << ACCEPTANCE_PARTS) - 1,
         .out = out,
         .seed = r->seed,
         .samples = 1000000,

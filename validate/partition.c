@@ -420,6 +420,41 @@ struct patch partition_patch(const struct partition *p, size_t bin)
                            at.side->phi0 + phi[1] };
 }
 
+/* The slice that holds an azimuth, of one strip. */
+static size_t slice_at(const struct cuts *phi, double at)
+{
+    size_t low = 0, high = phi->count;
+    while (high - low > 1) {
+        const size_t middle = (low + high) / 2;
+        if (at < phi->edge[middle])
+            high = middle;
+        else
+            low = middle;
+    }
+    return low;
+}
+
+/* The bin beyond an edge of one; none beyond the normals and the horizon. */
+static size_t bin_beside(const void *partition, size_t bin,
+                         enum quadrature_side side, double *theta, double *phi)
+{
+    const struct place at = place_of(partition, bin);
+    const struct side *s = at.side;
+    (void)theta;
+    if (side == QUADRATURE_Y0 || side == QUADRATURE_Y1) {
+        const size_t last = at.phi->count - 1;
+        if (side == QUADRATURE_Y0 ? at.slice > 0 : at.slice < last)
+            return side == QUADRATURE_Y0 ? bin - 1 : bin + 1;
+        *phi += side == QUADRATURE_Y0 ? 2 * PI : -2 * PI;
+        return side == QUADRATURE_Y0 ? bin + last : bin - last;
+    }
+    if (side == QUADRATURE_X0 ? at.strip == 0 : at.strip + 1 == s->theta.count)
+        return QUADRATURE_NONE;
+    const size_t strip = side == QUADRATURE_X0 ? at.strip - 1 : at.strip + 1;
+    return s->first[strip] +
+           slice_at(&s->phi[s->theta.quantile[strip]], *phi - s->phi0);
+}
+
 bool partition_integrate(const struct partition *p, sphere_fn *f,
                          const void *context, int parts, double tolerance,
                          long budget, struct estimate *out)
@@ -436,8 +471,8 @@ bool partition_integrate(const struct partition *p, sphere_fn *f,
         for (int part = 0; part < parts; part++)
             job[bin].out[part] = (struct estimate){ 0, 0 };
     }
-    ok = ok &&
-         patches_integrate(f, context, parts, job, p->bins, tolerance, &budget);
+    ok = ok && patches_integrate(f, context, parts, job, p->bins, bin_beside, p,
+                                 tolerance, &budget);
     free(job);
     return ok;
 }

@@ -141,6 +141,7 @@ static bool hints_make(const struct over *o, const struct patch_job *job,
 
 bool patches_integrate(sphere_fn *f, const void *context, int parts,
                        const struct patch_job *job, size_t jobs,
+                       quadrature_beside *beside, const void *mesh,
                        double tolerance, long *budget)
 {
     struct over o = { .f = f, .context = context, .parts = parts };
@@ -160,7 +161,8 @@ bool patches_integrate(sphere_fn *f, const void *context, int parts,
                                      job[i].out };
         at += heeded(&job[i]);
     }
-    ok = ok && quadrature(on_patches, &o, parts, part, jobs, tolerance, budget);
+    ok = ok && quadrature_joined(on_patches, &o, parts, part, jobs, beside,
+                                 mesh, tolerance, budget);
     free(part);
     free(hint);
     free(o.x);

@@ -36,10 +36,11 @@ struct patch_job {
     struct estimate *out;
 };
 
-/** Integrates over the patch of each job; see quadrature.  False when out of
- * memory. */
+/** Integrates over the patch of each job; see quadrature.  Theta is its x and
+ * phi its y for beside, which may be NULL.  False when out of memory. */
 bool patches_integrate(sphere_fn *f, const void *context, int parts,
                        const struct patch_job *job, size_t jobs,
+                       quadrature_beside *beside, const void *mesh,
                        double tolerance, long *budget);
 
 /** The integral over the upper hemisphere of a function that may peak at the

@@ -258,8 +258,8 @@ static bool look_again(struct subject *s, double tolerance)
                                              slots.hint + (k - 1) * HINTS,
                                              slots.n[k - 1], &v->mass[i] };
         }
-        ok = patches_integrate(pdf_at, s, 1, job, slots.count, tolerance,
-                               &budget);
+        ok = patches_integrate(pdf_at, s, 1, job, slots.count, NULL, NULL,
+                               tolerance, &budget);
     }
     free(job);
     free(slots.n);
