@@ -458,6 +458,7 @@ int main(int argc, char **argv)
                argc, argv, 0, NULL, &r);
     const time_t start = time(NULL);
     r.plan.threads = 1;
+    r.plan.unexplained = true;
     mirrors_try(&mirrors, &r.plan);
     cases_gather(&cases);
     cases_try(&cases, &r.plan);
