@@ -69,7 +69,7 @@ static bool by_quadrature(const struct subject *s, struct energy *e)
     const bool ok =
         part && partition_integrate(v->partition, energy_at, s, parts,
                                     energy_tolerance + rounding / 400,
-                                    energy_budget, part);
+                                    subject_batch(s), energy_budget, part);
     for (int b = 0; ok && b < parts; b++)
         for (size_t i = 0; i < bins; i++)
             sum[b] = estimate_add(sum[b], part[i * (size_t)parts + (size_t)b]);

@@ -10,7 +10,7 @@
 
 #include "bsdf/lanes.h"
 
-enum { QUANTILES = 20, INTERVALS_MAX = 192 };
+enum { QUANTILES = 20, INTERVALS_MAX = 192 }; /* numbers of bytes */
 enum { COARSE_THETA = 5, COARSE_PHI = 4 };
 
 /* Intervals between sorted edges, and the group of QUANTILES that each is in
@@ -49,8 +49,10 @@ struct partition {
     struct side side[2]; /* above and below */
     struct search search;
     size_t bins;
-    struct vec3 *pilot; /* by bins */
-    size_t *first;      /* pilot of each bin; one more at the end */
+    unsigned char *strip; /* of each bin */
+    double *pilot;        /* x, y and z of all of them */
+    struct dirs pilots;   /* the same, by bins */
+    size_t *first;        /* pilot of each bin; one more at the end */
 };
 
 struct polar {
@@ -274,13 +276,28 @@ static void find(const struct partition *p, size_t n, struct dirs w,
     }
 }
 
+static bool strips_keep(struct partition *p)
+{
+    p->strip = malloc(p->bins);
+    size_t bin = 0;
+    for (int below = 0; p->strip && below < 2; below++) {
+        const struct side *s = &p->side[below];
+        for (size_t i = 0; i < s->theta.count; i++)
+            for (size_t k = s->phi[s->theta.quantile[i]].count; k > 0; k--)
+                p->strip[bin++] = (unsigned char)i;
+    }
+    return p->strip;
+}
+
 /* Keeps the pilots in the order of their bins. */
 static bool pilots_keep(struct partition *p, const struct vec3 *pilot, size_t n)
 {
-    p->pilot = malloc((n + 1) * sizeof *p->pilot);
+    p->pilot = malloc((3 * n + 1) * sizeof *p->pilot);
     p->first = calloc(p->bins + 2, sizeof *p->first);
     uint32_t *bin = malloc((n + 1) * sizeof *bin);
     const bool ok = p->pilot && p->first && bin;
+    if (ok)
+        p->pilots = (struct dirs){ p->pilot, p->pilot + n, p->pilot + 2 * n };
     for (size_t at = 0; ok && at < n; at += LANES_MAX) {
         double x[LANES_MAX], y[LANES_MAX], z[LANES_MAX];
         const size_t k = n - at < LANES_MAX ? n - at : LANES_MAX;
@@ -294,8 +311,12 @@ static bool pilots_keep(struct partition *p, const struct vec3 *pilot, size_t n)
     for (size_t k = 0; ok && k <= p->bins; k++)
         p->first[k + 1] += p->first[k];
     /* first[k] runs up to where k + 1 starts, and is put back. */
-    for (size_t i = 0; ok && i < n; i++)
-        p->pilot[p->first[bin[i]]++] = pilot[i];
+    for (size_t i = 0; ok && i < n; i++) {
+        const size_t at = p->first[bin[i]]++;
+        p->pilot[at] = pilot[i].x;
+        p->pilot[n + at] = pilot[i].y;
+        p->pilot[2 * n + at] = pilot[i].z;
+    }
     for (size_t k = p->bins + 1; ok && k > 0; k--)
         p->first[k] = p->first[k - 1];
     if (ok)
@@ -334,7 +355,7 @@ struct partition *partition_new(const struct vec3 *pilot, size_t n, size_t m)
         side_cut(s, below * PI / 2, (below + 1) * PI / 2, polar, count, value,
                  &p->bins);
     }
-    if (!search_make(p) || !pilots_keep(p, pilot, n + m)) {
+    if (!search_make(p) || !strips_keep(p) || !pilots_keep(p, pilot, n + m)) {
         partition_free(p);
         p = NULL;
     }
@@ -350,6 +371,7 @@ void partition_free(struct partition *p)
         return;
     free(p->search.theta);
     free(p->search.phi);
+    free(p->strip);
     free(p->pilot);
     free(p->first);
     free(p);
@@ -378,9 +400,7 @@ struct place {
 static struct place place_of(const struct partition *p, size_t bin)
 {
     const struct side *s = &p->side[bin >= p->side[1].first[0]];
-    size_t i = s->theta.count - 1;
-    while (s->first[i] > bin)
-        i--;
+    const size_t i = p->strip[bin];
     return (struct place){ s, &s->phi[s->theta.quantile[i]], i,
                            bin - s->first[i] };
 }
@@ -451,20 +471,21 @@ static size_t bin_beside(const void *partition, size_t bin,
     if (side == QUADRATURE_X0 ? at.strip == 0 : at.strip + 1 == s->theta.count)
         return QUADRATURE_NONE;
     const size_t strip = side == QUADRATURE_X0 ? at.strip - 1 : at.strip + 1;
+    const struct cuts *slices = &s->phi[s->theta.quantile[strip]];
     return s->first[strip] +
-           slice_at(&s->phi[s->theta.quantile[strip]], *phi - s->phi0);
+           (slices == at.phi ? at.slice : slice_at(slices, *phi - s->phi0));
 }
 
 bool partition_integrate(const struct partition *p, sphere_fn *f,
                          const void *context, int parts, double tolerance,
-                         long budget, struct estimate *out)
+                         size_t batch, long budget, struct estimate *out)
 {
     struct patch_job *job = malloc((p->bins + 1) * sizeof *job);
     bool ok = job;
     for (size_t bin = 0; ok && bin < p->bins; bin++) {
         job[bin] = (struct patch_job){
             .patch = partition_patch(p, bin),
-            .hint = p->pilot + p->first[bin],
+            .hint = dirs_from(p->pilots, p->first[bin]),
             .n = p->first[bin + 1] - p->first[bin],
             .out = out + bin * (size_t)parts,
         };
@@ -472,7 +493,7 @@ bool partition_integrate(const struct partition *p, sphere_fn *f,
             job[bin].out[part] = (struct estimate){ 0, 0 };
     }
     ok = ok && patches_integrate(f, context, parts, job, p->bins, bin_beside, p,
-                                 tolerance, &budget);
+                                 tolerance, batch, &budget);
     free(job);
     return ok;
 }

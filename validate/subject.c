@@ -79,10 +79,18 @@ struct repeated {
     double x[SUBJECT_BATCH], y[SUBJECT_BATCH], z[SUBJECT_BATCH];
 };
 
+LANES static void fill(size_t n, double *x, double value)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        x[i] = value;
+}
+
 static struct dirs repeat(struct repeated *r, struct vec3 w, size_t n)
 {
-    for (size_t i = 0; i < n; i++)
-        r->x[i] = w.x, r->y[i] = w.y, r->z[i] = w.z;
+    fill(n, r->x, w.x);
+    fill(n, r->y, w.y);
+    fill(n, r->z, w.z);
     return (struct dirs){ r->x, r->y, r->z };
 }
 
