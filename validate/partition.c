@@ -5,6 +5,7 @@
  */
 #include "validate/partition.h"
 
+#include <gsl/gsl_sort.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -74,12 +75,6 @@ static int by_theta(const void *a, const void *b)
 {
     const double x = ((const struct polar *)a)->theta;
     const double y = ((const struct polar *)b)->theta;
-    return (x > y) - (x < y);
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
@@ -202,7 +197,7 @@ static void side_cut(struct side *s, double from, double to,
         const size_t last = few ? n : (k + 1) * n / QUANTILES;
         for (size_t i = first; i < last; i++)
             value[i] = pilot[i].phi;
-        qsort(value + first, last - first, sizeof *value, ascending);
+        gsl_sort(value + first, 1, last - first);
         cut(&s->phi[k], value + first, last - first, -PI, PI, PI / 4);
     }
     keys_make(s);

@@ -1,6 +1,7 @@
 /* sphere.c - quadrature in polar angles */
 #include "validate/sphere.h"
 
+#include <gsl/gsl_sort.h>
 #include <stdlib.h>
 
 #include "bsdf/fastmath.h"
@@ -223,12 +224,6 @@ static void on_share(const void *context, size_t n,
         }
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 struct estimate
 hemisphere_facing(double (*f)(struct vec3 w, const void *context),
                   const void *context, struct vec3 wo, double tolerance)
@@ -243,7 +238,7 @@ hemisphere_facing(double (*f)(struct vec3 w, const void *context),
     const double turn = atan2(wo.y, wo.x);
     mark[5] = fmod(turn + 5 * PI / 2, 2 * PI);
     mark[6] = fmod(turn + 7 * PI / 2, 2 * PI);
-    qsort(mark, MARKS, sizeof *mark, ascending);
+    gsl_sort(mark, 1, MARKS);
 
     double phi[EDGES];
     size_t n = 0;

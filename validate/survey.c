@@ -347,25 +347,6 @@ static size_t tails_draw(const struct subject *s, struct vec3 *tail)
     return n;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* The median of the rounding over pilots. */
-static double typical_rounding(const struct subject *s,
-                               const struct vec3 *pilot, size_t n)
-{
-    enum { LOOKS = 65 };
-    double off[LOOKS];
-    const size_t looks = n < LOOKS ? n : LOOKS;
-    for (size_t i = 0; i < looks; i++)
-        off[i] = subject_rounding(s, pilot[i * (n / looks)], true);
-    qsort(off, looks, sizeof *off, ascending);
-    return looks ? off[looks / 2] : 0;
-}
-
 bool survey_make(struct subject *s, struct err *err)
 {
     struct survey *v = &s->survey;
@@ -373,7 +354,7 @@ bool survey_make(struct subject *s, struct err *err)
     struct vec3 *pilot = pilots_draw(s, &n);
     if (pilot) {
         v->partition = partition_new(pilot, n, tails_draw(s, pilot + n));
-        v->rounding = typical_rounding(s, pilot, n);
+        v->rounding = subject_typical_rounding(s, pilot, n, true);
     }
     free(pilot);
     const size_t bins = v->partition ? partition_bins(v->partition) : 1;
