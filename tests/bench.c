@@ -13,14 +13,15 @@
  * The baseline of a chi-square on 51 x 102 bins is tests/baseline_simpson.c.
  */
 #include <gsl/gsl_integration.h>
+#include <gsl/gsl_sort.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "bsdf/fastmath.h"
 #include "bsdf/lanes.h"
 #include "tests/baseline_simpson.h"
+#include "tests/publish.h"
 #include "validate/checks.h"
 
 enum {
@@ -62,15 +63,9 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *time, size_t n)
 {
-    qsort(time, n, sizeof *time, by_size);
+    gsl_sort(time, 1, n);
     return time[n / 2];
 }
 
@@ -732,21 +727,14 @@ struct results {
 
 static void print_machine(void)
 {
-    char line[256], model[200] = "unknown", date[20] = "";
-    FILE *f = fopen("/proc/cpuinfo", "r");
-    while (f && fgets(line, sizeof line, f))
-        if (sscanf(line, "model name : %199[^\n]", model) == 1)
-            break;
-    if (f)
-        fclose(f);
-    const time_t now = time(NULL);
-    strftime(date, sizeof date, "%Y-%m-%d", localtime(&now));
+    const struct machine m = machine_now();
 #ifdef __clang__
     const char *compiler = __VERSION__;
 #else
     const char *compiler = "gcc " __VERSION__;
 #endif
-    printf("machine   %s\ncompiler  %s\ndate      %s\n", model, compiler, date);
+    printf("machine   %s\ncompiler  %s\ndate      %s\n", m.processor, compiler,
+           m.date);
     printf("method    one thread, its own time; medians; three bands; %d "
            "directions, wo "
            "uniform over the upper\n          hemisphere and wi drawn by the "
