@@ -46,8 +46,8 @@ LANGUAGE := -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno \
             -DBSDF_DATA_DIR='"$(CURDIR)/data"' $(XML2)
 COMPILE   = $(CC) $(LANGUAGE) $(FLAGS) $(WARN) $(CPPFLAGS) $(CFLAGS)
 LIBS     := -lxml2 -lgsl -lgslcblas -lyaml -ljansson -ldl -lm
-# What only the renderer and the tests need.
-INTEGRATOR_LIBS := -lembree3 -lOpenEXRCore -lpng
+# What the integrator needs besides; the other programs do not link it.
+INTEGRATOR_LIBS := -lembree3 -lassimp -lOpenEXRCore -lpng -llzma
 
 # `make V=1` shows the commands.
 SAY := @printf '  %-5s %s\n'
@@ -82,6 +82,8 @@ endif
 
 objects   = $(patsubst %.c,$(B)/obj/%.o,$(1))
 libof     = $(B)/lib$(1).a
+# Of a program, by the file with its main().
+libs      = $(if $(filter integrator/%,$(1)),$(INTEGRATOR_LIBS)) $(LIBS)
 # Each library before those that it uses.
 LIBRARIES := $(foreach d,integrator plots validate bsdf,\
                $(if $(filter $(d),$(FOLDERS)),$(call libof,$(d))))
@@ -96,7 +98,7 @@ MAINS     := $(foreach s,$(SOURCES),$(if $(PROGRAM_$(s:.c=)),$(s)))
 PROGRAMS  := $(foreach m,$(MAINS),$(B)/bin/$(PROGRAM_$(m:.c=)))
 
 .PHONY: all
-all: tools-found $(PROGRAMS) ## build the programs into build/bin/ (the default)
+all: tools-found $(PROGRAMS) scenes ## build the programs into build/bin/ (the default)
 
 define library
 $(call libof,$(1)): $(call objects,$(filter-out $(MAINS),$(filter $(1)/%,$(SOURCES))))
@@ -107,7 +109,7 @@ define program
 $(B)/bin/$(PROGRAM_$(1:.c=)): $(call objects,$(1)) $(LIBRARIES)
 	@mkdir -p $$(@D)
 	$$(SAY) LINK $$@
-	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(LIBS)
+	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(call libs,$(1))
 endef
 $(foreach m,$(MAINS),$(eval $(call program,$(m))))
 $(foreach d,$(FOLDERS),$(eval $(call library,$(d))))
@@ -120,7 +122,28 @@ $(B)/obj/%.o: %.c Makefile
 $(B)/bin/tests/%: $(B)/obj/tests/%.o $(call objects,$(HELPERS)) $(LIBRARIES)
 	@mkdir -p $(@D)
 	$(SAY) LINK $@
-	$(Q)$(COMPILE) $(LDFLAGS) -o $@ $^ -lcmocka $(INTEGRATOR_LIBS) $(LIBS)
+	$(Q)$(COMPILE) $(LDFLAGS) -o $@ $^ -lcmocka -Wl,--as-needed $(INTEGRATOR_LIBS) $(LIBS)
+
+# The scenes, and a mesh that is too large to be kept.
+KNOT    := $(B)/obj/data/scenes/knot
+SCENES  := $(patsubst data/%,$(B)/%,$(wildcard data/scenes/*.xml)) \
+           $(B)/scenes/knot.ply
+
+.PHONY: scenes
+scenes: $(SCENES) ## data/scenes/ and the mesh of mesh.xml, in build/scenes/
+
+$(B)/scenes/%.xml: data/scenes/%.xml
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
+
+$(B)/scenes/knot.ply: $(KNOT)
+	@mkdir -p $(@D)
+	$(SAY) MESH $@
+	$(Q)$< $@
+
+$(KNOT): $(KNOT).o
+	$(SAY) LINK $@
+	$(Q)$(COMPILE) $(LDFLAGS) -o $@ $^ -lm
 
 -include $(shell find $(B)/obj -name '*.d' 2>/dev/null)
 .PRECIOUS: $(B)/obj/%.o
@@ -138,7 +161,9 @@ library Random123/threefry.h -lm                librandom123-dev
 library yaml.h             -lyaml               libyaml-dev
 library jansson.h          -ljansson            libjansson-dev
 library libxml/xmlwriter.h $(XML2),-lxml2 libxml2-dev
+library lzma.h             -llzma               liblzma-dev
 library embree3/rtcore.h   -lembree3            libembree-dev
+library assimp/cimport.h   -lassimp             libassimp-dev
 library OpenEXR/openexr.h  -lOpenEXRCore        libopenexr-dev
 library png.h              -lpng                libpng-dev
 library cmocka.h           -lcmocka             libcmocka-dev
@@ -256,7 +281,7 @@ VERSION  = $(shell sed -n 's/^\#define BSDF_VERSION "\(.*\)"/\1/p' bsdf/cli.h)
 
 # bsdf.h, and what else a renderer may want, with all that they include.
 PUBLIC  := $(patsubst %,bsdf/%.h,bands bsdf cie colour err fresnel ior ndf plugin rng vec)
-TABLES  := $(shell find data -type f ! -name '.*')
+TABLES  := $(shell find data -type f ! -name '.*' ! -name '*.c')
 STAGED  := $(PROGRAMS:$(B)/bin/%=$(STAGE)/%) $(STAGE)/libbsdf.a $(STAGE)/libbsdf.pc
 # Programs that tell their options, and so have a manual page and completion.
 TALKING := $(filter-out bsdf-plugin-host,$(PROGRAMS:$(B)/bin/%=%))
@@ -270,7 +295,8 @@ INSTALLED := $(foreach f,$(PROGRAMS:$(B)/bin/%=%),$(STAGE)/$(f)=bin/$(f)) \
              $(foreach f,$(PUBLIC),$(f)=include/$(f)) \
              validate/adapters/course.hpp=include/bsdf/course.hpp \
              validate/report.schema.json=share/bsdf/report.schema.json \
-             $(foreach f,$(TABLES),$(f)=share/bsdf/$(f))
+             $(foreach f,$(TABLES),$(f)=share/bsdf/$(f)) \
+             $(B)/scenes/knot.ply=share/bsdf/data/scenes/knot.ply
 
 # Manual pages are made of what the programs say of their options, by help2man;
 # where there is none they are left out, and said to be.
@@ -297,7 +323,7 @@ CHECK_PREFIX = $(if $(filter 1/,$(words $(PREFIX))$(patsubst /%,/,$(PREFIX))),,$
                $(error PREFIX=$(PREFIX): expected an absolute path without spaces))
 
 .PHONY: install uninstall always
-install: tools-found $(STAGED) $(MANUAL) ## programs, libbsdf, manual pages and more, to PREFIX=/usr/local (and DESTDIR)
+install: tools-found $(STAGED) $(MANUAL) scenes ## programs, libbsdf, manual pages, tables and more, to PREFIX=/usr/local (and DESTDIR)
 	@for f in $(INSTALLING); do \
 	    to="$(DESTDIR)$(PREFIX)/$${f#*=}"; \
 	    case $$f in *=bin/*) mode=755;; *) mode=644;; esac; \
@@ -337,7 +363,7 @@ define staged
 $(STAGE)/$(PROGRAM_$(1:.c=)): $(call objects,$(1)) \
     $(LIBRARIES:$(call libof,bsdf)=$(STAGE)/libbsdf.a)
 	$$(SAY) LINK $$@
-	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(LIBS)
+	$$(Q)$$(COMPILE) $(LDFLAGS) -o $$@ $$^ $(call libs,$(1))
 endef
 $(foreach m,$(MAINS),$(eval $(call staged,$(m))))
 
@@ -461,7 +487,8 @@ peer-mitsuba: all ## validate the BSDFs of Mitsuba 3, and why some fail (Python,
 
 # -- order --------------------------------------------------------------------
 
-C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(LONG) $(HELPERS)
+C_FILES = $(SOURCES) $(HEADERS) $(TESTS:%=tests/%.c) $(LONG) $(HELPERS) \
+          data/scenes/knot.c
 # What other programs include or compile by themselves, and so not linted here.
 ALONE   = $(wildcard validate/adapters/*.hpp tests/plugins/*.c tests/plugins/*.cpp)
 

@@ -8,7 +8,7 @@
  *
  * where v is va with nu_v = na - 1 and vb with nb - 1 (Welch), or what both
  * together say of either, with na + nb - 2 (pooled) [1]; the larger sum wins,
- * and nu is at most (sum v)^2 / sum(v^2) - 1.
+ * and nu is at most (sum v)^2 / sum(v^2) / 2 - 1.
  * Numbers that are no further apart than a film's float can tell are equal.
  *
  * The power is that of the non-central t by the normal approximation of [2],
@@ -131,7 +131,7 @@ static void add(struct spread *s, double v, double freedom)
 static double freedom(const struct spread *s)
 {
     const double v2 = s->v * s->v;
-    return v2 > 0 ? fmax(1, fmin(v2 / s->v2_nu, v2 / s->v2 - 1)) : 1;
+    return v2 > 0 ? fmax(1, fmin(v2 / s->v2_nu, v2 / s->v2 / 2 - 1)) : 1;
 }
 
 static double p_value(const struct test *t)
@@ -257,8 +257,8 @@ static void add_region(struct tests *t, const struct film *a,
 static bool make_tests(struct tests *t, const struct film *a,
                        const struct film *b, int side, struct err *err)
 {
-    const size_t across = (size_t)((a->width - 1) / side + 1);
-    const size_t down = (size_t)((a->height - 1) / side + 1);
+    const size_t across = ((size_t)a->width - 1) / (size_t)side + 1;
+    const size_t down = ((size_t)a->height - 1) / (size_t)side + 1;
     *t = (struct tests){ .test = malloc(3 * (across * down + 1) *
                                         sizeof *t->test) };
     if (!t->test)
@@ -282,6 +282,7 @@ static int by_p(const void *a, const void *b)
  * after the first that passes. */
 static bool holm(const struct tests *t, struct comparison *r, struct err *err)
 {
+    assert(t->count > 0);
     double *p = malloc((size_t)t->count * sizeof *p);
     if (!p)
         return err_set(err, "out of memory");

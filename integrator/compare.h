@@ -14,7 +14,7 @@
  *     the pooled one, which takes the variance of a sample to be the same in
  *     both pictures.  For as many samples a pixel the two are one; the pooled
  *     one costs power where the picture of many samples is also the noisier.
- *   - The degrees of freedom are no more than the pixels that carry the
+ *   - The degrees of freedom are no more than half the pixels that carry the
  *     variance, (sum v)^2 / sum(v^2), less one.
  *   - By the same count over the whole picture, with variances relative to the
  *     squared mean around, a block has 16 such pixels on average: unless its

@@ -31,7 +31,13 @@ bool mesh_check(const struct mesh *m, const char *name, struct err *err);
  * allocates the array where there is none. */
 bool mesh_smooth(struct mesh *m, struct err *err);
 
-struct vec3 mesh_vertex(const struct mesh *m, size_t triangle, int corner);
+static inline struct vec3 mesh_vertex(const struct mesh *m, size_t triangle,
+                                      int corner)
+{
+    const float *p =
+        m->xyz + 3 * (size_t)m->index[3 * triangle + (size_t)corner];
+    return (struct vec3){ (double)p[0], (double)p[1], (double)p[2] };
+}
 
 /** Twice the area times the unit normal. */
 struct vec3 mesh_cross(const struct mesh *m, size_t triangle);

@@ -12,6 +12,7 @@
 #include <embree3/rtcore.h>
 #include <math.h>
 #include <omp.h>
+#include <stdalign.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -21,7 +22,8 @@
 #include <xmmintrin.h>
 #endif
 
-enum { TILE = 16 };
+enum { TILE = 16, PACKET = 16 };
+enum { SINGLE, COHERENT }; /* rays */
 static const float pi = 3.14159265f;
 /* A ray starts and ends this far off, of the distance from the world's origin
  * and of its own length. */
@@ -146,32 +148,36 @@ static inline struct RTCRay ray(struct v3 o, struct v3 d, float near, float far)
                             .mask = ~0u };
 }
 
-/* Whether the ray hits; where, and the normal on the ray's side. */
+/* What a ray hit: where, and the normal on the ray's side. */
 struct hit {
     struct v3 p, n;
-    const float *albedo;
+    const float *albedo; /* NULL of the lamp */
     bool emits;
 };
 
-static inline bool trace(const struct view *w, struct RTCIntersectContext *c,
-                         struct v3 o, struct v3 d, float near, float far,
-                         struct hit *h)
+static inline struct hit hit_at(const struct view *w, struct v3 p, struct v3 d,
+                                struct v3 normal, unsigned triangle)
 {
-    struct RTCRayHit r = { .ray = ray(o, d, near, far),
+    const int m = w->scene->material[triangle];
+    const bool front = dot(normal, d) < 0, lamp = m == w->scene->light.lamp;
+    return (struct hit){
+        .p = p,
+        .n = unit(front ? normal : scale(normal, -1)),
+        .albedo = lamp ? NULL : w->scene->albedo + 3 * m,
+        .emits = lamp && front,
+    };
+}
+
+static inline bool trace(const struct view *w, struct RTCIntersectContext *c,
+                         struct v3 o, struct v3 d, float near, struct hit *h)
+{
+    struct RTCRayHit r = { .ray = ray(o, d, near, INFINITY),
                            .hit.geomID = RTC_INVALID_GEOMETRY_ID };
     rtcIntersect1(w->embree, c, &r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return false;
-    const int m = w->scene->material[r.hit.primID];
-    const struct v3 n = unit(v3(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z));
-    const bool front = dot(n, d) < 0;
-    h->p = add(o, scale(d, r.ray.tfar));
-    h->n = front ? n : scale(n, -1);
-    h->albedo = w->scene->albedo + 3 * m;
-    h->emits = m == w->scene->light.lamp;
-    if (h->emits)
-        h->albedo = NULL;
-    h->emits = h->emits && front;
+    *h = hit_at(w, add(o, scale(d, r.ray.tfar)), d,
+                v3(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z), r.hit.primID);
     return true;
 }
 
@@ -233,56 +239,93 @@ static inline struct v3 direct(const struct view *w,
     return scale(w->radiance, here * there * w->light_area / (pi * d2 * d2));
 }
 
+/* Of a path that goes on from what the camera saw. */
 static struct v3 path(const struct view *w, struct RTCIntersectContext *c,
-                      struct v3 o, struct v3 d, float near, float far,
-                      struct random *r, struct counts *count)
+                      struct hit h, struct random *r, struct counts *count)
 {
-    struct v3 sum = v3(0, 0, 0), weight = v3(1, 1, 1);
-    struct hit h;
-    for (int i = 0;; i++) {
-        count->rays++;
-        if (!trace(w, c, o, d, near, far, &h))
-            return sum;
-        if (i == 0 && h.emits)
-            sum = w->radiance;
-        if (!h.albedo || i == w->depth)
-            return sum;
+    struct v3 sum = h.emits ? w->radiance : v3(0, 0, 0), weight = v3(1, 1, 1);
+    for (int i = 1; h.albedo && i <= w->depth; i++) {
+        const float near =
+            off * (1 + fabsf(h.p.x) + fabsf(h.p.y) + fabsf(h.p.z));
         weight = mul(weight, load(h.albedo));
-        near = off * (1 + fabsf(h.p.x) + fabsf(h.p.y) + fabsf(h.p.z));
         sum = add(sum, mul(weight, direct(w, c, &h, near, r, count)));
-        if (i + 1 == w->depth)
-            return sum;
-        o = h.p;
-        d = bounce(h.n, r);
-        far = INFINITY;
+        if (i == w->depth)
+            break;
+        count->rays++;
+        if (!trace(w, c, h.p, bounce(h.n, r), near, &h))
+            break;
     }
+    return sum;
 }
 
 /* -- pictures -------------------------------------------------------------- */
 
-static void pixel(const struct view *w, struct RTCIntersectContext *c, int x,
-                  int y, float *rgb, struct counts *count)
+/* The rays of a packet of samples of one pixel; valid is -1 of those. */
+static void aim(const struct view *w, int x, int y, int n, struct random *r,
+                int valid[PACKET], struct RTCRayHit16 *p)
 {
     const struct camera *camera = &w->scene->camera;
-    struct random r =
-        random_at(w->seed, (uint64_t)y * (uint64_t)camera->width + (uint64_t)x);
-    struct v3 sum = v3(0, 0, 0);
-    for (int i = 0; i < w->samples; i++) {
+    for (int i = 0; i < PACKET; i++) {
         const struct v3 d =
-            add(add(w->corner, scale(w->right, (float)x + uniform(&r))),
-                scale(w->down, (float)y + uniform(&r)));
+            add(add(w->corner, scale(w->right, (float)x + uniform(r))),
+                scale(w->down, (float)y + uniform(r)));
         const float length = sqrtf(dot(d, d));
-        sum = add(sum, path(w, c, w->eye, scale(d, 1 / length),
-                            (float)camera->near * length,
-                            (float)camera->far * length, &r, count));
+        valid[i] = i < n ? -1 : 0;
+        p->ray.org_x[i] = w->eye.x;
+        p->ray.org_y[i] = w->eye.y;
+        p->ray.org_z[i] = w->eye.z;
+        p->ray.tnear[i] = (float)camera->near * length;
+        p->ray.dir_x[i] = d.x / length;
+        p->ray.dir_y[i] = d.y / length;
+        p->ray.dir_z[i] = d.z / length;
+        p->ray.time[i] = 0;
+        p->ray.tfar[i] = (float)camera->far * length;
+        p->ray.mask[i] = ~0u;
+        p->ray.id[i] = p->ray.flags[i] = 0;
+        p->hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
+static struct v3 packet(const struct view *w, struct RTCIntersectContext c[2],
+                        int x, int y, int n, struct random *r,
+                        struct counts *count)
+{
+    alignas(64) int valid[PACKET];
+    struct RTCRayHit16 p;
+    struct v3 sum = v3(0, 0, 0);
+    aim(w, x, y, n, r, valid, &p);
+    rtcIntersect16(valid, w->embree, &c[COHERENT], &p);
+    count->rays += (uint64_t)n;
+    for (int i = 0; i < n; i++) {
+        if (p.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
+            continue;
+        const struct v3 d = v3(p.ray.dir_x[i], p.ray.dir_y[i], p.ray.dir_z[i]);
+        const struct hit h = hit_at(
+            w, add(w->eye, scale(d, p.ray.tfar[i])), d,
+            v3(p.hit.Ng_x[i], p.hit.Ng_y[i], p.hit.Ng_z[i]), p.hit.primID[i]);
+        sum = add(sum, path(w, &c[SINGLE], h, r, count));
+    }
+    return sum;
+}
+
+static void pixel(const struct view *w, struct RTCIntersectContext c[2], int x,
+                  int y, float *rgb, struct counts *count)
+{
+    struct random r = random_at(
+        w->seed, (uint64_t)y * (uint64_t)w->scene->camera.width + (uint64_t)x);
+    struct v3 sum = v3(0, 0, 0);
+    for (int i = 0; i < w->samples; i += PACKET) {
+        const int left = w->samples - i;
+        sum = add(sum,
+                  packet(w, c, x, y, left < PACKET ? left : PACKET, &r, count));
     }
     rgb[0] = sum.x / (float)w->samples;
     rgb[1] = sum.y / (float)w->samples;
     rgb[2] = sum.z / (float)w->samples;
 }
 
-static void tile(const struct view *w, struct RTCIntersectContext *c, int left,
-                 int top, float *rgb, struct counts *count)
+static void tile(const struct view *w, struct RTCIntersectContext c[2],
+                 int left, int top, float *rgb, struct counts *count)
 {
     const int width = w->scene->camera.width, height = w->scene->camera.height;
     for (int y = top; y < top + TILE && y < height; y++)
@@ -313,12 +356,14 @@ static void render(const struct view *w, int threads, float *rgb,
         const unsigned mode = _mm_getcsr();
         _mm_setcsr(mode | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
 #endif
-        struct RTCIntersectContext c;
+        struct RTCIntersectContext c[2];
         struct counts count = { 0 };
-        rtcInitIntersectContext(&c);
+        rtcInitIntersectContext(&c[SINGLE]);
+        rtcInitIntersectContext(&c[COHERENT]);
+        c[COHERENT].flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
 #pragma omp for schedule(dynamic, 1) nowait
         for (int i = 0; i < across * down; i++)
-            tile(w, &c, i % across * TILE, i / across * TILE, rgb, &count);
+            tile(w, c, i % across * TILE, i / across * TILE, rgb, &count);
 #ifdef __SSE__
         _mm_setcsr(mode);
 #endif

@@ -1,11 +1,11 @@
 /* baseline_tracer.h - a minimal path tracer on Embree, to measure others by
  *
  * As fast as a short program of its kind gets: triangles, one diffuse albedo
- * each, one rectangle that emits, a pinhole; single rays in float, cosine
- * sampling, one uniform point of the light a bounce, no multiple importance
- * sampling, no Russian roulette, a box filter.  It computes what
- * integrator/render.h does of such a scene, in expectation; the yardstick of
- * `make bench`.
+ * each, one rectangle that emits, a pinhole; float; camera rays in packets of
+ * 16, all others one by one; cosine sampling, one uniform point of the light a
+ * bounce, no multiple importance sampling, no Russian roulette, a box filter.
+ * It computes what integrator/render.h does of such a scene, in expectation;
+ * the yardstick of `make bench`.
  *
  * Points, vectors and colours are three floats; the arrays are borrowed.
  */

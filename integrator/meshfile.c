@@ -1,0 +1,227 @@
+/* meshfile.c - meshes from PLY and OBJ files, by assimp
+ *
+ * A PLY file's header is looked through first, as assimp allocates what it
+ * claims: elements with so many properties take at least so many bytes.
+ */
+#include "integrator/meshfile.h"
+
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "integrator/xml.h"
+
+static size_t property_bytes(const char *type)
+{
+    static const struct {
+        const char *name;
+        size_t bytes;
+    } types[] = {
+        { "char", 1 },  { "uchar", 1 },   { "int8", 1 },   { "uint8", 1 },
+        { "short", 2 }, { "ushort", 2 },  { "int16", 2 },  { "uint16", 2 },
+        { "int", 4 },   { "uint", 4 },    { "int32", 4 },  { "uint32", 4 },
+        { "float", 4 }, { "float32", 4 }, { "double", 8 }, { "float64", 8 },
+        { NULL, 0 },
+    };
+    for (int i = 0; types[i].name; i++)
+        if (strcmp(types[i].name, type) == 0)
+            return types[i].bytes;
+    return 0;
+}
+
+/* What a header claims so far. */
+struct claims {
+    const char *path;
+    size_t left;          /* bytes not claimed yet */
+    char element[32];     /* the one that properties belong to */
+    unsigned long long n; /* how many of them */
+    bool binary;
+};
+
+static bool header_line(struct claims *c, const char *line, int number,
+                        struct err *err)
+{
+    char a[32] = "", b[32] = "", extra[32] = "";
+    const int words = sscanf(line, "%*31s %31s %31s %31s", a, b, extra);
+    size_t bytes = 0;
+    if (strncmp(line, "format ", 7) == 0) {
+        c->binary = strncmp(a, "binary", 6) == 0;
+        return true;
+    }
+    if (strncmp(line, "element ", 8) == 0) {
+        char *end = b;
+        memcpy(c->element, a, sizeof a);
+        c->n = strtoull(b, &end, 10);
+        return (words == 2 && end != b && *end == '\0' && b[0] != '-') ||
+               err_set(err, "%s:%d: \"%.60s\": expected a name and a number",
+                       c->path, number, line);
+    }
+    if (strncmp(line, "property ", 9) != 0)
+        return true;
+    /* A list takes at least its length. */
+    bytes = property_bytes(strcmp(a, "list") == 0 ? b : a);
+    if (bytes == 0)
+        return err_set(err, "%s:%d: \"%.60s\": expected a type such as float",
+                       c->path, number, line);
+    bytes = c->binary ? bytes : 2; /* a digit and a blank */
+    if (c->n > c->left / bytes)
+        return err_set(err,
+                       "%s:%d: %llu of \"%s\" are claimed, but the file is too "
+                       "short for them",
+                       c->path, number, c->n, c->element);
+    c->left -= (size_t)c->n * bytes;
+    return true;
+}
+
+static bool ply_check(const char *path, const char *text, size_t size,
+                      struct err *err)
+{
+    /* The last line of a text may lack its end. */
+    struct claims c = { .path = path, .left = size + 1 };
+    int number = 1;
+    if (strncmp(text, "ply", 3) != 0 || (text[3] != '\n' && text[3] != '\r'))
+        return err_set(err, "%s:1: expected \"ply\"", path);
+    for (const char *at = text, *end; (size_t)(at - text) < size;
+         at = end + 1, number++) {
+        char line[128];
+        end = memchr(at, '\n', size - (size_t)(at - text));
+        if (!end)
+            break;
+        const size_t n = (size_t)(end - at);
+        snprintf(line, sizeof line, "%.*s",
+                 (int)(n < sizeof line ? n : sizeof line - 1), at);
+        line[strcspn(line, "\r")] = '\0';
+        if (strcmp(line, "end_header") == 0)
+            return true;
+        if (!header_line(&c, line, number, err))
+            return false;
+    }
+    return err_set(err, "%s:%d: expected end_header", path, number);
+}
+
+/* -- what assimp made of it -- */
+
+static bool counted(const struct aiScene *a, const char *path, size_t *vertices,
+                    size_t *triangles, bool *normals, struct err *err)
+{
+    *vertices = *triangles = 0;
+    *normals = true;
+    for (unsigned i = 0; i < a->mNumMeshes; i++) {
+        const struct aiMesh *m = a->mMeshes[i];
+        for (unsigned k = 0; k < m->mNumFaces; k++)
+            *triangles += m->mFaces[k].mNumIndices == 3;
+        *vertices += m->mNumVertices;
+        *normals &= m->mNormals != NULL;
+        if (m->mNumVertices && !m->mVertices)
+            return err_set(err, "%s: its vertices have no coordinates", path);
+    }
+    return *triangles ||
+           err_set(err, "%s: expected triangles, and there are none", path);
+}
+
+static void put3(float *to, struct vec3 v)
+{
+    to[0] = (float)v.x, to[1] = (float)v.y, to[2] = (float)v.z;
+}
+
+static struct vec3 vector(struct aiVector3D v)
+{
+    return (struct vec3){ (double)v.x, (double)v.y, (double)v.z };
+}
+
+/* The direction of a normal; what has none has none. */
+static struct vec3 direction(struct vec3 n)
+{
+    const double length = vec3_length(n);
+    return length > 0 ? vec3_scale(1 / length, n) : n;
+}
+
+/* Appends one of assimp's meshes. */
+static bool append(struct mesh *m, size_t *vertex, size_t *triangle,
+                   const struct aiMesh *from, bool normals,
+                   const struct meshfile_options *o, const char *path,
+                   struct err *err)
+{
+    for (unsigned i = 0; i < from->mNumFaces; i++) {
+        const struct aiFace *f = &from->mFaces[i];
+        if (f->mNumIndices != 3)
+            continue;
+        for (int k = 0; k < 3; k++) {
+            const unsigned v = f->mIndices[o->flip_normals ? 2 - k : k];
+            if (v >= from->mNumVertices)
+                return err_set(err,
+                               "%s: a face has vertex %u: expected a number "
+                               "below %u, as many as there are",
+                               path, v, from->mNumVertices);
+            m->index[3 * *triangle + (size_t)k] = (unsigned)(*vertex + v);
+        }
+        ++*triangle;
+    }
+    for (unsigned i = 0; i < from->mNumVertices; i++, ++*vertex) {
+        put3(m->xyz + 3 * *vertex,
+             affine_point(&o->to_world, vector(from->mVertices[i])));
+        if (!normals)
+            continue;
+        const struct vec3 n =
+            affine_normal(&o->to_world, vector(from->mNormals[i]));
+        put3(m->normal + 3 * *vertex,
+             direction(vec3_scale(o->flip_normals ? -1 : 1, n)));
+    }
+    return true;
+}
+
+static struct mesh *convert(const struct aiScene *a, const char *path,
+                            const struct meshfile_options *o, struct err *err)
+{
+    size_t vertices, triangles, vertex = 0, triangle = 0;
+    bool normals;
+    if (!counted(a, path, &vertices, &triangles, &normals, err))
+        return NULL;
+    normals &= !o->face_normals;
+    struct mesh *m = mesh_new(vertices, triangles, normals, err);
+    for (unsigned i = 0; m && i < a->mNumMeshes; i++)
+        if (!append(m, &vertex, &triangle, a->mMeshes[i], normals, o, path,
+                    err)) {
+            mesh_free(m);
+            return NULL;
+        }
+    if (m && mesh_check(m, path, err) &&
+        (normals || o->face_normals || mesh_smooth(m, err)))
+        return m;
+    mesh_free(m);
+    return NULL;
+}
+
+struct mesh *meshfile_read(const char *path,
+                           const struct meshfile_options *options,
+                           size_t *bytes, struct err *err)
+{
+    const char *ending = strrchr(path, '.');
+    const bool ply = ending && strcasecmp(ending, ".ply") == 0;
+    struct mesh *m = NULL;
+    if (!ply && !(ending && strcasecmp(ending, ".obj") == 0)) {
+        err_set(err, "%s: expected a name that ends in .ply or .obj", path);
+        return NULL;
+    }
+    char *text = xml_read_file(path, bytes, err);
+    if (!text)
+        return NULL;
+    if (!ply || ply_check(path, text, *bytes, err)) {
+        const struct aiScene *a = aiImportFileFromMemory(
+            text, (unsigned)*bytes,
+            aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
+                aiProcess_ValidateDataStructure,
+            ply ? "ply" : "obj");
+        if (a)
+            m = convert(a, path, options, err);
+        else
+            err_set(err, "%s: %.300s", path, aiGetErrorString());
+        aiReleaseImport(a);
+    }
+    free(text);
+    return m;
+}

@@ -1,0 +1,315 @@
+/* test_render.c - bsdf-render as a user meets it
+ *
+ * The programs are in the folder that BIN names, build/bin by default.  Scenes
+ * are those of data/scenes, and one of the test's own; pictures of the course's
+ * are compared where BSDF_SHARED (../shared) has them.
+ */
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "tests/close.h"
+#include "tests/shell.h"
+
+enum { OUTPUT_MAX = 1 << 16 };
+
+static char folder[64], output[OUTPUT_MAX];
+
+/* A lamp above a floor, beside a mirror ball. */
+static const char scene[] =
+    "<scene version='3.0.0'>\n"
+    "<default name='radius' value='0.3'/>\n"
+    "<default name='spp' value='4'/>\n"
+    "<integrator type='path'><integer name='max_depth' value='4'/>"
+    "</integrator>\n"
+    "<sensor type='perspective'><float name='fov' value='40'/>\n"
+    "<transform name='to_world'><lookat origin='0, 1, 4' target='0, 0.4, 0' "
+    "up='0, 1, 0'/></transform>\n"
+    "<film type='hdrfilm'><integer name='width' value='60'/>"
+    "<integer name='height' value='40'/><rfilter type='box'/></film>\n"
+    "<sampler type='independent'><integer name='sample_count' "
+    "value='$spp'/></sampler></sensor>\n"
+    "<shape type='rectangle'><transform name='to_world'>"
+    "<rotate x='1' angle='-90'/></transform><bsdf type='diffuse'/></shape>\n"
+    "<shape type='rectangle'><transform name='to_world'><scale value='0.3'/>"
+    "<rotate x='1' angle='90'/><translate y='1.5'/></transform>"
+    "<emitter type='area'><rgb name='radiance' value='9, 8, 7'/></emitter>"
+    "</shape>\n"
+    "<shape type='sphere'><point name='center' x='0.4' y='0.3' z='0'/>"
+    "<float name='radius' value='$radius'/><bsdf type='conductor'/></shape>\n"
+    "</scene>\n";
+
+static int sh(const char *command)
+{
+    return shell(command, output, OUTPUT_MAX);
+}
+
+static void does(const char *command)
+{
+    const int status = sh(command);
+    if (status != 0)
+        print_error("%s: status %d: %s\n", command, status, output);
+    assert_int_equal(status, 0);
+}
+
+/* Status 2, one line on standard error with both parts, and no picture. */
+static void refused(const char *arguments, const char *a, const char *b)
+{
+    char line[1024];
+    snprintf(line, sizeof line,
+             "rm -f $T/no.png; cd $T && bsdf-render -f no.png %s 2>&1 "
+             "</dev/null",
+             arguments);
+    const int status = sh(line);
+    if (status != 2)
+        print_error("%s: status %d: %s\n", arguments, status, output);
+    assert_int_equal(status, 2);
+    assert_has(output, a);
+    assert_has(output, b);
+    const char *end = strchr(output, '\n');
+    assert_true(end && end[1] == '\0');
+    assert_int_equal(sh("test -e $T/no.png"), 1);
+}
+
+static int setup(void **state)
+{
+    char path[8192], bin[4096], text[8192];
+    (void)state;
+    const char *given = getenv("BIN");
+    if (!realpath(given ? given : "build/bin", bin))
+        return -1;
+    snprintf(path, sizeof path, "%s:%s", bin, getenv("PATH"));
+    setenv("PATH", path, 1);
+    strcpy(folder, "/tmp/bsdf-render-XXXXXX");
+    if (!mkdtemp(folder))
+        return -1;
+    setenv("T", folder, 1);
+    snprintf(text, sizeof text, "%s/a.xml", folder);
+    FILE *out = fopen(text, "w");
+    return !out || fputs(scene, out) < 0 || fclose(out) != 0;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    return sh("rm -rf \"$T\"");
+}
+
+static void writes_pictures(void **state)
+{
+    (void)state;
+    does("bsdf-render $T/a.xml -f $T/a.png -f $T/a.exr 2>$T/said && "
+         "test -s $T/a.png && test -s $T/a.exr && ls $T | wc -l");
+    assert_string_equal(output + strlen(output) - 2, "4\n"); /* said, a.* */
+    does("cat $T/said");
+    assert_has(output, "3 shapes");
+    assert_has(output, "60 x 40 pixels");
+    assert_has(output, "samples 4, depth 3,");
+    assert_has(output, "mean luminance 0.");
+    does("cd $T && bsdf-render --quiet a.xml 2>&1");
+    assert_string_equal(output, "a.png\n");
+}
+
+static void says_how_a_picture_was_made(void **state)
+{
+    (void)state;
+    does("bsdf-render --quiet --seed 17 $T/a.xml -f $T/a.exr && "
+         "strings -n 3 $T/a.exr");
+    assert_has(output, "--seed 17");
+    assert_has(output, "bsdf-render ");
+    assert_has(output, "seconds");
+}
+
+static void the_same_for_any_threads(void **state)
+{
+    (void)state;
+    does("for t in 1 2 5; do bsdf-render --quiet -t $t -s 9 $T/a.xml -f "
+         "$T/t$t.png >$T/said || exit 1; done; cmp $T/t1.png $T/t2.png && "
+         "cmp $T/t1.png $T/t5.png");
+}
+
+static void compares(void **state)
+{
+    (void)state;
+    does("cd $T && bsdf-render --quiet -s 64 a.xml -f a.exr && "
+         "bsdf-render --quiet -s 64 --seed 2 a.xml -f b.exr && "
+         "bsdf-render --quiet -s 64 -D radius=0.32 a.xml -f c.exr");
+    assert_int_equal(sh("cd $T && bsdf-render --compare a.exr b.exr"), 0);
+    print_message("%s", output);
+    assert_int_equal(
+        sh("cd $T && bsdf-render --compare a.exr c.exr --map z.png"), 1);
+    print_message("%s", output);
+    assert_int_equal(sh("test -s $T/z.png"), 0);
+    does("cd $T && bsdf-render --quiet -s 64 a.xml -f a.png && bsdf-render "
+         "--quiet -s 64 --seed 2 a.xml -f b.png && bsdf-render --compare a.png "
+         "b.png --block 10");
+    assert_has(output, "correlation 0.9");
+}
+
+static void ways_to_the_same_picture(void **state)
+{
+    static const char *const ways[] = {
+        "--direct light",
+        "--direct bsdf",
+        "-H",
+        "--sampling cosine",
+        "--sampling uniform",
+        "-l 3",
+        "--rr-depth 1",
+        "--rr-depth 1 --rr-probability 0.6",
+    };
+    (void)state;
+    does("cd $T && bsdf-render --quiet -s 400 --seed 9 a.xml -f a.exr");
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        char line[512];
+        snprintf(line, sizeof line,
+                 "cd $T && bsdf-render --quiet -s 400 %s a.xml -f b.exr && "
+                 "bsdf-render --compare a.exr b.exr",
+                 ways[i]);
+        does(line);
+    }
+}
+
+static void bounces_add_up(void **state)
+{
+    (void)state;
+    does("cd $T && for m in 0 1 2 3; do bsdf-render -s 64 -m $m -o 0 a.xml -f "
+         "m.exr 2>&1 | sed -n 's/mean luminance \\([^ ]*\\).*/\\1/p'; done");
+    double sum = 0, part[4];
+    assert_int_equal(
+        sscanf(output, "%lf %lf %lf %lf", part, part + 1, part + 2, part + 3),
+        4);
+    for (int i = 0; i < 4; i++)
+        sum += part[i];
+    does("cd $T && bsdf-render -s 64 -m 3 a.xml -f m.exr 2>&1 | sed -n "
+         "'s/mean luminance \\([^ ]*\\).*/\\1/p'");
+    print_message("%g + %g + %g + %g = %g; all %s", part[0], part[1], part[2],
+                  part[3], sum, output);
+    assert_close(atof(output), sum, 0.02 * sum);
+}
+
+static void adaptive_counts(void **state)
+{
+    (void)state;
+    does("cd $T && bsdf-render -s 256 -a 16 0.1 a.xml -f a.png 2>&1 && "
+         "test -s a_rate.png");
+    assert_has(output, "samples a pixel: ");
+    assert_has(output, ", 16 to 256");
+}
+
+static void wrong_requests(void **state)
+{
+    (void)state;
+    refused("", "SCENE", "data/scenes");
+    refused("a.xml b.xml", "b.xml", "one argument too many");
+    refused("missing.xml", "missing.xml", "No such file");
+    refused("a.xml -f b.jpg", "b.jpg", ".png or .exr");
+    refused("a.xml -s 0", "-s 0", "[1, 4294967296]");
+    refused("a.xml -m -1", "-m -1", "whole number");
+    refused("a.xml -m 1.5", "-m 1.5", "whole number");
+    refused("a.xml -r 0 5", "-r W 0", "whole number");
+    refused("a.xml -r 7", "-r W H", "missing");
+    refused("a.xml -a 8", "-a BATCH TOL", "missing");
+    refused("a.xml -a 8 -1", "-a TOL -1", "[0, ");
+    refused("a.xml -o 2", "-o 2", "[0, 1]");
+    refused("a.xml -p 50 0 20 5", "20 x 5 at 50, 0", "60 x 40");
+    refused("a.xml -b 0.1", "-b 0.1", "focal distance");
+    refused("a.xml -c a.xml", "a.xml", "number 1");
+    refused("a.xml -e a.xml", "a.xml", "EXR");
+    refused("a.xml --direct mix", "mix", "mis");
+    refused("a.xml --sampling cosin", "cosin", "cosine");
+    refused("a.xml --sampler sobol", "sobol", "ldsampler");
+    refused("a.xml --compat corse", "corse", "course");
+    refused("a.xml -D radius", "radius", "NAME=VALUE");
+    refused("a.xml -D radius=wide", "a.xml", "wide");
+    refused("--compare a.xml", "--compare", "two pictures");
+    refused("--compare a.xml a.xml", "a.xml", "EXR");
+    refused("a.xml -f /dev/full/x.png", "/dev/full/x.png", "Not a directory");
+}
+
+/* A picture that was there stays, or the new one is whole. */
+static void killed_while_writing(void **state)
+{
+    (void)state;
+    does(
+        "cd $T && bsdf-render --quiet a.xml -r 900 700 -s 1 -f k.exr -f k.png");
+    does(
+        "cd $T && cp k.exr old.exr && for i in 1 2 3 4 5 6 7 8 9 10 11 12; do "
+        "bsdf-render --quiet a.xml -r 900 700 -s 2 --seed $i -f k.exr >said & "
+        "p=$!; sleep 0.$((i * 7 + 5)); kill -9 $p 2>/dev/null; wait $p "
+        "2>/dev/null; bsdf-render --compare k.exr k.exr --block 100 >said 2>&1 "
+        "|| grep -q 'two samples' said || { cat said; exit 1; }; done");
+}
+
+static void interrupted_keeps_what_is_done(void **state)
+{
+    (void)state;
+    const int status = sh("cd $T && rm -f i.exr && (bsdf-render a.xml -s 1e9 "
+                          "-f i.exr 2>said & p=$!; sleep 1; kill -INT $p; "
+                          "wait $p)");
+    assert_int_equal(status, 130);
+    does("cd $T && cat said && test -s i.exr");
+    assert_has(output, "stopped; samples 1000000000");
+}
+
+static void surroundings(void **state)
+{
+    (void)state;
+    /* What a lamp's picture lights is a sky of the same mean. */
+    does("cd $T && bsdf-render --quiet -s 16 a.xml -f sky.exr && bsdf-render "
+         "--quiet -s 200 -e sky.exr a.xml -f a.exr && bsdf-render --quiet -s "
+         "200 --direct bsdf --seed 2 -e sky.exr a.xml -f b.exr && bsdf-render "
+         "--compare a.exr b.exr");
+}
+
+static void cameras_of_the_course(void **state)
+{
+    (void)state;
+    does("cd $T && printf '50 39 1.3333 0.1 100\\n0 0.75 4.8 0 0.75 0\\n1.57 0 "
+         "4.8 0.1 10\\n1 0 0 0 1 0 0 0 1\\n60 40 64.3\\n4.7 0.01\\n' >c.txt && "
+         "bsdf-render -c c.txt a.xml -f c.png 2>&1");
+    assert_has(output, "mean luminance 0.");
+}
+
+static void the_courses_pictures(void **state)
+{
+    (void)state;
+    const char *shared = getenv("BSDF_SHARED");
+    char line[1024];
+    snprintf(line, sizeof line, "test -d '%s/data/cs184'",
+             shared ? shared : "../shared");
+    if (sh(line) != 0) {
+        print_message("skipped: there is no %s/data/cs184\n",
+                      shared ? shared : "../shared");
+        skip();
+    }
+    snprintf(line, sizeof line,
+             "sh tests/course.sh \"$(dirname \"$(command -v bsdf-render)\")\" "
+             "'%s' $T/course fast",
+             shared ? shared : "../shared");
+    const int status = sh(line);
+    print_message("%s", output);
+    assert_int_equal(status, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        { "it writes pictures and says what it did", writes_pictures },
+        { "a picture says how it was made", says_how_a_picture_was_made },
+        { "threads do not change a picture", the_same_for_any_threads },
+        { "pictures are compared", compares },
+        { "there are many ways to one picture", ways_to_the_same_picture },
+        { "bounces add up", bounces_add_up },
+        { "adaptive sampling counts", adaptive_counts },
+        { "wrong requests are refused", wrong_requests },
+        { "kill -9 leaves the old picture or the new", killed_while_writing },
+        { "an interruption keeps what is done",
+          interrupted_keeps_what_is_done },
+        { "a picture may surround the scene", surroundings },
+        { "the course's camera files are read", cameras_of_the_course },
+        { "the course's pictures are made again", the_courses_pictures },
+    };
+    return cmocka_run_group_tests_name("render", tests, setup, teardown);
+}
