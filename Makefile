@@ -151,7 +151,8 @@ $(KNOT): $(KNOT).o
 # -- set-up -------------------------------------------------------------------
 # One line a library: what to include, how to link, Debian's package.  A tool
 # has a line as well.  Looked for by compiling and linking; a gnuplot that is
-# there, of whatever flavour, is left alone.
+# there, of whatever flavour, is left alone.  What is extra is installed where
+# that can be done, and else done without.
 
 define NEEDS
 library stdio.h            -lm                  libc6-dev
@@ -168,10 +169,11 @@ library png.h              -lpng                libpng-dev
 library cmocka.h           -lcmocka             libcmocka-dev
 library omp.h              -fopenmp             $(if $(findstring clang,$(CC)),libomp-dev,gcc)
 tool    gnuplot            -                    gnuplot-nox
+extra   help2man           -                    help2man
 endef
 export NEEDS
 
-# Prints the packages that are missing.
+# Prints the packages that are missing; with $extras set, extra ones as well.
 define FIND_MISSING
 echo "$$NEEDS" | while read -r kind what link package; do \
     case $$kind in \
@@ -179,6 +181,8 @@ echo "$$NEEDS" | while read -r kind what link package; do \
         { cat; echo 'int main(void) { return 0; }'; } | \
         $(CC) -x c - -o /dev/null -fopenmp $$(echo $$link | tr , ' ') \
         >/dev/null 2>&1 || printf '%s ' $$package;; \
+    extra) [ -z "$$extras" ] || command -v $$what >/dev/null 2>&1 || \
+        printf '%s ' $$package;; \
     tool) command -v $$what >/dev/null 2>&1 || printf '%s ' $$package;; \
     esac; \
 done
@@ -189,6 +193,7 @@ setup: build/.setup-$(notdir $(firstword $(CC))) ## install what is missing (Deb
 
 build/.setup-$(notdir $(firstword $(CC))): Makefile
 	@mkdir -p build; \
+	extras=$$(command -v apt-get); \
 	missing=$$($(FIND_MISSING)); \
 	if [ -n "$$missing" ]; then \
 	    if ! command -v apt-get >/dev/null 2>&1; then \
@@ -201,6 +206,7 @@ build/.setup-$(notdir $(firstword $(CC))): Makefile
 	    $$as env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
 	        --no-install-recommends $$missing >build/setup.log 2>&1 || \
 	        { tail -n 20 build/setup.log >&2; exit 2; }; \
+	    extras=; \
 	    missing=$$($(FIND_MISSING)); \
 	    if [ -n "$$missing" ]; then \
 	        echo "still missing after the installation: $$missing" >&2; \
@@ -213,6 +219,7 @@ build/.setup-$(notdir $(firstword $(CC))): Makefile
 # does.
 tools-found:
 	@[ -e build/.setup-$(notdir $(firstword $(CC))) ] || { \
+	    extras=; \
 	    missing=$$($(FIND_MISSING)); \
 	    [ -z "$$missing" ] || { \
 	        echo "missing, by the names of Debian's packages: $$missing" \
@@ -239,9 +246,28 @@ demo: setup ## from measured calcium to a verdict and pictures, in build/demo/
 	$(BIN)/bsdf-plot lobe '$(CALCIUM)' --wo 45,0 -o $(DEMO)/lobe.svg
 	$(BIN)/bsdf-plot histogram '$(CALCIUM)' --wo 45,0 -o $(DEMO)/histogram.svg
 
+# The pages of the pictures say how each is made: the commands of their sh
+# blocks are run, in a folder of their own, and what they draw is copied.
+# $(1) where to, $(2) the pages, the later ones going on where the others end.
+define draw
+	@rm -rf build/gallery && mkdir -p build/gallery
+	@cd build/gallery && export PATH="$(abspath $(BIN)):$$PATH" \
+	    BSDF="$(CURDIR)" CPATH="$(CURDIR)" && \
+	    for page in $(2); do \
+	        sh "$$BSDF/tests/blocks.sh" sh "$$BSDF/$$page" >blocks && \
+	            sh -e blocks >printed || exit 1; \
+	    done
+	@cd build/gallery && grep -ho '$(1)/[a-z0-9_-]*\.[a-z]*' \
+	    $(addprefix $(CURDIR)/,$(lastword $(2))) | sort -u | while read -r f; do \
+	        cp "$$(basename "$$f")" $(CURDIR)/$(dir $(lastword $(2)))$(1)/ && \
+	            echo "$(dir $(lastword $(2)))$$f"; \
+	    done
+endef
+
 .PHONY: gallery
-gallery: all ## draw the README's pictures again
-	cd plots/gallery && ../../$(BIN)/bsdf-plot histogram '$(CALCIUM)' --wo 45,0 -o histogram.svg
+gallery: all ## draw the pictures of the README and of validate/README.md again
+	$(call draw,gallery,plots/GALLERY.md)
+	$(call draw,pictures,validate/TUTORIAL.md validate/README.md)
 
 # -- installing ---------------------------------------------------------------
 # What is installed looks for its tables below PREFIX: the one file that knows
@@ -257,8 +283,13 @@ VERSION  = $(shell sed -n 's/^\#define BSDF_VERSION "\(.*\)"/\1/p' bsdf/cli.h)
 PUBLIC  := $(patsubst %,bsdf/%.h,bands bsdf cie colour err fresnel ior ndf plugin rng vec)
 TABLES  := $(shell find data -type f ! -name '.*' ! -name '*.c')
 STAGED  := $(PROGRAMS:$(B)/bin/%=$(STAGE)/%) $(STAGE)/libbsdf.a $(STAGE)/libbsdf.pc
+# Programs that tell their options, and so have a manual page and completion.
+TALKING := $(filter-out bsdf-plugin-host,$(PROGRAMS:$(B)/bin/%=%))
+COMPLETIONS := share/bash-completion/completions
 # from=to, the latter below PREFIX
 INSTALLED := $(foreach f,$(PROGRAMS:$(B)/bin/%=%),$(STAGE)/$(f)=bin/$(f)) \
+             $(foreach f,$(TALKING),bsdf/completion.bash=$(COMPLETIONS)/$(f)) \
+             $(foreach f,$(TALKING),$(B)/man/$(f).1=share/man/man1/$(f).1) \
              $(STAGE)/libbsdf.a=lib/libbsdf.a \
              $(STAGE)/libbsdf.pc=lib/pkgconfig/libbsdf.pc \
              $(foreach f,$(PUBLIC),$(f)=include/$(f)) \
@@ -267,19 +298,41 @@ INSTALLED := $(foreach f,$(PROGRAMS:$(B)/bin/%=%),$(STAGE)/$(f)=bin/$(f)) \
              $(foreach f,$(TABLES),$(f)=share/bsdf/$(f)) \
              $(B)/scenes/knot.ply=share/bsdf/data/scenes/knot.ply
 
+# Manual pages are made of what the programs say of their options, by help2man;
+# where there is none they are left out, and said to be.
+HAS_HELP2MAN := $(shell command -v help2man 2>/dev/null)
+MANUAL       := $(if $(HAS_HELP2MAN),$(TALKING:%=$(B)/man/%.1))
+INSTALLING   := $(if $(MANUAL),$(INSTALLED),$(filter-out %.1,$(INSTALLED)))
+
+.PHONY: man
+man: tools-found ## the manual pages, into build/man/ (help2man)
+	@$(call install_tool,help2man,help2man)
+	@$(MAKE) --no-print-directory $(TALKING:%=$(B)/man/%.1)
+
+define page
+$(B)/man/$(PROGRAM_$(1:.c=)).1: $(B)/bin/$(PROGRAM_$(1:.c=)) \
+    $(dir $(1))$(PROGRAM_$(1:.c=)).h2m
+	@mkdir -p $$(@D)
+	$$(SAY) MAN $$@
+	$$(Q)help2man --no-info --include=$$(lastword $$^) -o $$@ $$<
+endef
+$(foreach m,$(MAINS),$(eval $(call page,$(m))))
+
 # One word that starts with a slash.
 CHECK_PREFIX = $(if $(filter 1/,$(words $(PREFIX))$(patsubst /%,/,$(PREFIX))),,$\
                $(error PREFIX=$(PREFIX): expected an absolute path without spaces))
 
 .PHONY: install uninstall always
-install: tools-found $(STAGED) scenes ## programs, libbsdf, headers, tables and the schema of reports, to PREFIX=/usr/local (and DESTDIR)
-	@for f in $(INSTALLED); do \
+install: tools-found $(STAGED) $(MANUAL) scenes ## programs, libbsdf, manual pages, tables and more, to PREFIX=/usr/local (and DESTDIR)
+	@for f in $(INSTALLING); do \
 	    to="$(DESTDIR)$(PREFIX)/$${f#*=}"; \
 	    case $$f in *=bin/*) mode=755;; *) mode=644;; esac; \
 	    mkdir -p "$$(dirname "$$to")" && \
 	        install -m $$mode "$${f%%=*}" "$$to" || exit 1; \
 	done
-	@echo "installed $(words $(INSTALLED)) files below $(DESTDIR)$(PREFIX)"
+	@echo "installed $(words $(INSTALLING)) files below $(DESTDIR)$(PREFIX)"
+	@[ -n "$(MANUAL)" ] || echo "without manual pages, as help2man is missing" \
+	    "(on Debian make man installs it; then make install again)" >&2
 
 # Folders such as lib/ may be others' as well, and stay.
 uninstall: ## remove what `make install` put there, given the same PREFIX and DESTDIR
