@@ -535,7 +535,7 @@ static int compare(const struct request *r, struct err *err)
         (r->numbers ? compare_print_numbers : compare_print)(stdout, &c);
     if (ok && r->map)
         ok = compare_write_map(map, r->map, err);
-    if (ok && r->map)
+    if (ok && r->map && !r->numbers)
         puts(r->map);
     film_free(a);
     film_free(b);
