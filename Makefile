@@ -66,7 +66,7 @@ TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 # What `make test` runs.  Statistics over thousands of cases ask nothing new of
 # memory, and sanitizers make them take minutes.
 RUN      := $(if $(filter sanitize,$(config)),\
-              $(filter-out test_calibration test_mutants,$(TESTS)),$(TESTS))
+              $(filter-out test_calibration test_mutants test_writeup,$(TESTS)),$(TESTS))
 # Programs of tests/ that `make test` does not run, each with its own target.
 LONG     := $(wildcard $(patsubst %,tests/%.c,bench mutants baselines calibrate))
 HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
@@ -268,6 +268,13 @@ endef
 gallery: all ## draw the pictures of the README and of validate/README.md again
 	$(call draw,gallery,plots/GALLERY.md)
 	$(call draw,pictures,validate/TUTORIAL.md validate/README.md)
+
+# Its own rules know what has changed; it goes on where it was interrupted.
+QUALITY ?= draft
+.PHONY: writeup
+writeup: setup ## a course's write-up, every figure and number made anew, into build/writeup/ (QUALITY=draft|final, COURSE_SCENES=DIR)
+	@$(MAKE) --no-print-directory -j$(JOBS) all
+	@$(MAKE) --no-print-directory -j$(JOBS) -f plots/writeup/writeup.mk BIN=$(BIN) QUALITY=$(QUALITY)
 
 # -- installing ---------------------------------------------------------------
 # What is installed looks for its tables below PREFIX: the one file that knows

@@ -39,6 +39,7 @@ static const struct symbol symbols[] = {
 };
 
 static bool row(struct reader *r, FILE *out, char end, struct err *err);
+static bool scripted(struct reader *r, FILE *out, struct err *err);
 
 static bool wrong(const struct reader *r, const char *what, struct err *err)
 {
@@ -74,6 +75,40 @@ static bool upright(struct reader *r, FILE *out, struct err *err)
     return true;
 }
 
+static bool fence(struct reader *r, FILE *out, struct err *err)
+{
+    if (!*r->at || !strchr("()[]|", *r->at))
+        return wrong(r, "expected ( ) [ ] or |", err);
+    fprintf(out, "<mo stretchy=\"true\">%c</mo>", *r->at++);
+    return true;
+}
+
+/* From behind \left and its fence to \right and its own, as one element. */
+static bool fenced(struct reader *r, FILE *out, struct err *err)
+{
+    static const char right[] = "\\right";
+    bool ok = ++r->depth <= DEPTH_MAX || wrong(r, "too deep", err);
+    while (ok && strncmp(r->at, right, strlen(right)) != 0)
+        if (*r->at == ' ')
+            r->at++;
+        else
+            ok = *r->at ? scripted(r, out, err)
+                        : wrong(r, "\\right is missing", err);
+    r->depth--;
+    if (!ok)
+        return false;
+    r->at += strlen(right);
+    return fence(r, out, err);
+}
+
+static bool in_row(struct reader *r, FILE *out, struct err *err)
+{
+    fputs("<mrow>", out);
+    const bool ok = fence(r, out, err) && fenced(r, out, err);
+    fputs("</mrow>", out);
+    return ok;
+}
+
 static bool named(struct reader *r, FILE *out, struct err *err)
 {
     const char *name = r->at;
@@ -91,12 +126,8 @@ static bool named(struct reader *r, FILE *out, struct err *err)
         return pair(r, out, "msqrt", 1, err);
     if (IS("mathrm"))
         return upright(r, out, err);
-    if (IS("left") || IS("right")) {
-        if (!*r->at || !strchr("()[]|", *r->at))
-            return wrong(r, "expected ( ) [ ] or |", err);
-        fprintf(out, "<mo stretchy=\"true\">%c</mo>", *r->at++);
-        return true;
-    }
+    if (IS("left"))
+        return in_row(r, out, err);
     if (IS("bar")) {
         fputs("<mover accent=\"true\">", out);
         const bool ok = group(r, out, err);
@@ -138,7 +169,9 @@ static bool atom(struct reader *r, FILE *out, struct err *err)
         fprintf(out, "<mo%s>%c</mo>",
                 strchr("()[]|", c) ? " stretchy=\"false\"" : "", c);
     } else if (c == '-') {
-        fputs("<mo>−</mo>", out);
+        /* A sign where nothing stands before it. */
+        const bool sign = r->at == r->all || strchr("({[", r->at[-1]);
+        fprintf(out, "<mo%s>−</mo>", sign ? " form=\"prefix\"" : "");
     } else if (c == '<' || c == '>') {
         fprintf(out, "<mo>%s</mo>", c == '<' ? "&lt;" : "&gt;");
     } else {
@@ -160,6 +193,20 @@ static bool group(struct reader *r, FILE *out, struct err *err)
     return ok;
 }
 
+/* What is set apart from its argument. */
+static bool is_function(const char *name)
+{
+    static const char *const functions[] = { "sin", "cos",    "tan",
+                                             "exp", "arctan", "ln" };
+    for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) {
+        const size_t n = strlen(functions[i]);
+        if (strncmp(name, functions[i], n) == 0 &&
+            !isalpha((unsigned char)name[n]))
+            return true;
+    }
+    return false;
+}
+
 /* An atom with what hangs on it. */
 static bool scripted(struct reader *r, FILE *out, struct err *err)
 {
@@ -167,6 +214,7 @@ static bool scripted(struct reader *r, FILE *out, struct err *err)
     size_t size;
     FILE *mem = open_memstream(&base, &size);
     bool ok = mem || err_set(err, "out of memory");
+    const bool letters = r->at[0] == '\\' && is_function(r->at + 1);
     if (mem) {
         ok = atom(r, mem, err);
         fclose(mem);
@@ -189,6 +237,8 @@ static bool scripted(struct reader *r, FILE *out, struct err *err)
     } else if (ok) {
         fputs(base, out);
     }
+    if (ok && letters && *r->at && !strchr("(|)}", *r->at))
+        fputs("<mspace width=\".17em\"/>", out);
     free(base);
     free(sub);
     free(super);

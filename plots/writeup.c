@@ -453,6 +453,7 @@ static bool figures(struct page *p, struct shown *s, int n, struct err *err)
     bool ok = true;
     fputs(p->tex        ? "\n\\noindent"
           : s[0].vector ? "<div class=\"plots\">\n"
+          : n <= 3      ? "<div class=\"renders few\">\n"
                         : "<div class=\"renders\">\n",
           p->out);
     for (int i = 0; ok && i < n; i++) {
@@ -462,7 +463,7 @@ static bool figures(struct page *p, struct shown *s, int n, struct err *err)
         if (p->tex)
             fputs(i == n - 1              ? "\\par\\medskip\n\n"
                   : (i + 1) % across == 0 ? "\\par\\medskip\\noindent\n"
-                                          : "\\hfill\n",
+                                          : "\\hspace*{.01\\linewidth}%\n",
                   p->out);
     }
     if (!p->tex)
@@ -502,7 +503,7 @@ static bool table_row_out(struct page *p, char *line, bool head, int *columns,
             fputc(i ? 'r' : 'l', p->out);
         fputs("}\\hline\n", p->out);
     } else if (head) {
-        fputs("<div class=\"scroll\"><table><thead>", p->out);
+        fputs("<div class=\"scroll rows\"><table><thead>", p->out);
     }
     if (head)
         *columns = n;
@@ -534,6 +535,18 @@ static void table_end(struct page *p)
           p->out);
 }
 
+/* For TeX, which makes one of several spaces. */
+static void aligned(struct page *p, const char *line)
+{
+    while (*line) {
+        const size_t n = strcspn(line, " "), spaces = strspn(line + n, " ");
+        run_of(p, line, n);
+        for (size_t i = 0; i < spaces; i++)
+            fputs(spaces == 1 ? " " : "~", p->out);
+        line += n + spaces;
+    }
+}
+
 /* Lines of a file as they stand. */
 static bool verbatim(struct page *p, const char *name, struct err *err)
 {
@@ -550,7 +563,7 @@ static bool verbatim(struct page *p, const char *name, struct err *err)
         if (p->tex) {
             const size_t n = strspn(line, " ");
             fprintf(p->out, "\\mbox{}\\hspace*{%zu.5em}", n / 2);
-            plain(p, line + n);
+            aligned(p, line + n);
             fputs("\\\\\n", p->out);
         } else {
             html_text(p->out, line);
@@ -566,16 +579,19 @@ static const char style[] =
     "body{max-width:80rem}"
     "p,li{max-width:46rem}"
     "pre{max-width:60rem;overflow-x:auto}"
-    "math[display=block]{margin:.7rem 0 .7rem 1.5rem;text-align:left;"
+    "math[display=block]{margin:.7rem 0 .7rem 1.5rem;width:fit-content;"
     "overflow-x:auto;overflow-y:hidden;font-size:1.1rem;max-width:100%}"
+    "thead th{white-space:normal;vertical-align:bottom}"
     "code,pre{font-family:ui-monospace,monospace;font-size:.85em}"
     ".n{text-align:right;font-variant-numeric:tabular-nums}"
-    ".scroll{max-width:60rem}table{width:auto;min-width:50%}"
+    ".scroll{max-width:60rem}.rows{width:fit-content;max-width:100%}"
+    "th,td{overflow-wrap:normal}"
     ".plots .scroll{max-width:100%}"
     ".renders,.plots{display:grid;gap:1rem;margin:1rem 0}"
     ".renders{grid-template-columns:repeat(auto-fill,minmax(min(100%,17rem),"
     "1fr))}"
-    ".plots{grid-template-columns:repeat(auto-fit,minmax(min(100%,34rem),"
+    ".few{grid-template-columns:repeat(auto-fill,minmax(min(100%,24rem),1fr))}"
+    ".plots{grid-template-columns:repeat(auto-fill,minmax(min(100%,34rem),"
     "1fr))}"
     "img{display:block;width:100%;image-rendering:pixelated;background:#000}"
     "figure svg{display:block;width:100%;height:auto;min-width:540px}"
@@ -590,7 +606,6 @@ static const char style[] =
 static const char preamble[] =
     "% Made by bsdf-plot writeup.  The figures lie beside it and in tex/.\n"
     "\\documentclass[a4paper]{article}\n"
-    "\\usepackage[T1]{fontenc}\n"
     "\\usepackage[utf8]{inputenc}\n"
     "\\usepackage{amsmath}\n"
     "\\usepackage{graphicx}\n"

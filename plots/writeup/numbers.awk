@@ -98,7 +98,7 @@ function by_depth(    m, before, d, e) {
     say("m5.of_all", v["m5", "luminance"] / v["m100", "luminance"])
     say("m4.of_all", v["m4", "luminance"] / v["m100", "luminance"])
     say("m5.noise_ratio", v["m5", "noise"] / v["m4", "noise"])
-    claim("noise_m5", v["m5", "noise"] < v["m4", "noise"])
+    claim("noise_m5", v["m5", "noise"] < .95 * v["m4", "noise"])
     claim("m4_captures", v["m4", "luminance"] > .9 * v["m100", "luminance"])
     claim("m100_brighter", d > 3 * e)
 }
@@ -179,6 +179,10 @@ function by_alpha(    i, a, name, mis, bright, calm, best, from) {
 
 function copper() {
     say("copper.ratio", 1 / v["cu-cosine-cu-importance", "variance_ratio"])
+    say("copper.off", v["cu-cosine", "luminance"] / \
+        v["cu-importance", "luminance"] - 1)
+    say("copper.sigma", (v["cu-cosine", "luminance"] - \
+        v["cu-importance", "luminance"]) / both("cu-cosine", "cu-importance"))
     say("copper.ratio_mesh", v["cu-cosine-mesh", "variance"] / \
         v["cu-importance-mesh", "variance"])
     say("copper.ratio_crop", v["crop-cosine", "variance"] / \

@@ -19,31 +19,41 @@ OUT     ?= $(DATA)/writeup/$(QUALITY)$(if $(COURSE_SCENES),-course)
 HERE    := $(ROOT)/plots/writeup
 
 # Pixels; samples a pixel of the spheres, of the roughnesses, of copper and of
-# calcium; of adaptive sampling at most, and a batch; of a validation; of a plot.
+# calcium; of adaptive sampling at most, a batch, and the tolerance; of a
+# validation; of a plot.
 ifeq ($(QUALITY),draft)
 W := 240
 H := 180
 SPP := 32 32 64
-ADAPTIVE := 64 16
+ADAPTIVE := 64 16 0.2
 SAMPLES := 1e6 1e6
 else ifeq ($(QUALITY),final)
 W := 480
 H := 360
 SPP := 256 128 64
-ADAPTIVE := 256 64
+ADAPTIVE := 256 64 0.05
 SAMPLES := 1e6 1e6
 else ifeq ($(QUALITY),test)
 W := 60
 H := 45
 SPP := 2 2 2
-ADAPTIVE := 4 2
+ADAPTIVE := 4 2 0.5
 SAMPLES := 2e4 2e4
 else
 $(error QUALITY=$(QUALITY): expected draft or final)
 endif
 spp      = $(word $(1),$(SPP))
 
+ifneq ($(COURSE_SCENES),)
+ifneq ($(words $(wildcard $(patsubst %,$(COURSE_SCENES)/CB%,spheres.dae \
+  bunny_microfacet_cu.dae dragon_microfacet_au.dae.xz))),3)
+$(error COURSE_SCENES=$(COURSE_SCENES): expected a folder with CBspheres.dae, \
+  CBbunny_microfacet_cu.dae and CBdragon_microfacet_au.dae.xz)
+endif
+endif
+
 all: $(OUT)/writeup.html $(OUT)/writeup.tex $(OUT)/writeup.pdf.done
+	@echo $(patsubst $(CURDIR)/%,%,$(OUT))/writeup.html
 
 # -- scenes -------------------------------------------------------------------
 # Where things are in the pictures: shares of width and height, from the upper
@@ -57,7 +67,7 @@ ifeq ($(COURSE_SCENES),)
 SPHERES   := spheres.xml
 VIEW      := -r $(W) $(H)
 REGIONS   := wall   .250 .680 .042 .083  glass .635 .694 .083 .139 \
-             image  .381 .711 .030 .039  spot  .700 .930 .052 .022 \
+             image  .3835 .714 .023 .031  spot  .700 .930 .052 .022 \
              roof   .313 .600 .031 .022
 MESH_PART := .31 .34 .42 .58
 CROP      := .33 .55 .25 .25
@@ -66,7 +76,9 @@ gold       = mesh.xml -D material=Au -D alpha=$(1) $(FIXED)
 copper     = mesh.xml -D material=Cu -D alpha=0.05 $(FIXED)
 calcium    = mesh.xml -D material=Ca -D alpha=0.1 --rgb $(1)
 MESH_FILES := mesh.xml knot.ply
-MESH_WORD := the knot
+MESHES := mesh.xml
+GOLDEN := The knot
+COPPERY := The knot
 COPPER_ALPHA := 0.05
 CALCIUM_ALPHA := 0.1
 else
@@ -75,7 +87,7 @@ SPHERES   := CBspheres.dae
 VIEW      := -r $(shell expr $(W) \* 5 / 3) $(shell expr $(H) \* 5 / 3) \
              -p $(shell expr $(W) / 3) $(shell expr $(H) / 3) $(W) $(H)
 REGIONS   := wall   .271 .667 .042 .083  glass .620 .694 .083 .125 \
-             image  .398 .708 .027 .036  spot  .646 .897 .073 .022 \
+             image  .396 .711 .025 .033  spot  .646 .897 .073 .022 \
              roof   .330 .589 .030 .020
 MESH_PART := .25 .30 .50 .62
 CROP      := .33 .55 .25 .25
@@ -87,7 +99,9 @@ copper     = CBbunny_microfacet_cu.dae
 calcium    = bunny-$(firstword $(subst :, ,$(1))).dae
 MESH_FILES := $(ALPHAS:%=dragon-%.dae) CBbunny_microfacet_cu.dae \
               bunny-fixed.dae bunny-fit.dae
-MESH_WORD := the dragon
+MESHES := CBdragon and CBbunny
+GOLDEN := The dragon
+COPPERY := The bunny
 COPPER_ALPHA := 0.05
 CALCIUM_ALPHA := 0.05
 endif
@@ -183,7 +197,7 @@ PARTS :=
 $(foreach m,0 1 2 3 4 5,$(call picture,m$(m),the spheres by at most $(m) bounces,$(SPHERES),$(SPHERES) $(VIEW) -s $(call spp,1) -l 1 -m $(m) --seed $(m)))
 $(call picture,m100,the spheres by at most 100 bounces,$(SPHERES),$(SPHERES) $(VIEW) -s $(call spp,1) -l 1 -m 100 --rr-depth 5 --seed 100)
 $(foreach b,0 1 2 3 4 5,$(call picture,b$(b),the spheres by the light of bounce $(b) alone,$(SPHERES),$(SPHERES) $(VIEW) -s $(call spp,1) -l 1 -m $(b) --only-bounce $(b) --exposure 2 --seed 20$(b),$(call parts,b$(b),$(REGIONS))))
-$(foreach m,5 100,$(call picture,a$(m),the spheres by at most $(m) bounces with adaptive sampling,$(SPHERES),$(SPHERES) $(VIEW) -s $(word 1,$(ADAPTIVE)) -a $(word 2,$(ADAPTIVE)) 0.05 -l 1 -m $(m) --rr-depth 5 --seed 30$(m)))
+$(foreach m,5 100,$(call picture,a$(m),the spheres by at most $(m) bounces with adaptive sampling,$(SPHERES),$(SPHERES) $(VIEW) -s $(word 1,$(ADAPTIVE)) -a $(wordlist 2,3,$(ADAPTIVE)) -l 1 -m $(m) --rr-depth 5 --seed 30$(m)))
 
 stem = $(subst .,,$(1:0.%=%))
 $(foreach a,$(ALPHAS),$(call picture,au$(call stem,$(a)),gold of alpha $(a) lit as in the course,$(MESH_FILES),$(call gold,$(a)) $(VIEW) -s $(call spp,2) -l 1 -m 5 --direct light --seed 41,$(call parts,au$(call stem,$(a)),mesh $(MESH_PART))))
@@ -243,7 +257,7 @@ bsdf-info ior Ca --rgb all >constants.txt
 bsdf-info ior --match 0.29294/0.28568/0.28733 2.7181/2.3479/1.8333 >match.txt
 endef
 $(eval $(call job,constants,the optical constants of calcium are looked up,bsdf-info.sum,$(CONSTANTS)))
-$(eval $(call job,settings,what was set,,printf '%s\t%s\n' quality $(QUALITY) spheres $(SPHERES) mesh '$(MESH_WORD)' width $(W) height $(H) spp $(call spp,1) spp_alpha $(call spp,2) spp_copper $(call spp,3) adaptive $(word 1,$(ADAPTIVE)) batch $(word 2,$(ADAPTIVE)) samples $(word 1,$(SAMPLES)) copper_alpha $(COPPER_ALPHA) calcium_alpha $(CALCIUM_ALPHA) course '$(COURSE)' mended '$(MENDED)' rough '$(ROUGH)' >settings.tsv))
+$(eval $(call job,settings,what was set,,printf '%s\t%s\n' quality $(QUALITY) spheres $(SPHERES) meshes '$(MESHES)' golden '$(GOLDEN)' coppery '$(COPPERY)' width $(W) height $(H) spp $(call spp,1) spp_alpha $(call spp,2) spp_copper $(call spp,3) adaptive $(word 1,$(ADAPTIVE)) batch $(word 2,$(ADAPTIVE)) tolerance $(word 3,$(ADAPTIVE)) samples $(word 1,$(SAMPLES)) copper_alpha $(COPPER_ALPHA) calcium_alpha $(CALCIUM_ALPHA) course '$(COURSE)' mended '$(MENDED)' rough '$(ROUGH)' >settings.tsv))
 $(eval $(call job,numbers,the numbers of the text,numbers.awk constants.done settings.done $(MEASURED:%=%.done),awk -f numbers.awk settings.tsv constants.txt match.txt $(addsuffix .tsv,$(MEASURED) $(PARTS))))
 
 # Their curves.  numbers.awk writes NAME.points.
@@ -255,7 +269,7 @@ $(call plot,noise,noise by alpha,series noise.points --log,numbers.done)
 
 PAGE := $(JOBS_ALL:%=%.done) writeup.txt bsdf-plot.sum
 $(OUT)/writeup.html $(OUT)/writeup.tex: $(PAGE:%=$(OUT)/%)
-	@$(BIN)/bsdf-plot writeup $(OUT)/writeup.txt -o $@
+	@$(BIN)/bsdf-plot writeup $(OUT)/writeup.txt -o $@ >/dev/null
 
 # Where there is a LaTeX the document is made as well; TeX wants a second look
 # at nothing, as there are no references.
