@@ -554,7 +554,8 @@ static bool verbatim(struct page *p, const char *name, struct err *err)
     char *text = html_file(beside(p, path, name, ""));
     if (!text)
         return err_set(err, "%s: cannot be read: %s", path, strerror(errno));
-    fputs(p->tex ? "\n{\\scriptsize\\begin{flushleft}\\ttfamily\n" : "<pre>",
+    fputs(p->tex ? "\n{\\scriptsize\\begin{flushleft}\\ttfamily\n"
+                 : "<pre class=\"file\">",
           p->out);
     char *rest = text;
     for (char *line; (line = strsep(&rest, "\n"));) {
@@ -579,6 +580,7 @@ static const char style[] =
     "body{max-width:80rem}"
     "p,li{max-width:46rem}"
     "pre{max-width:60rem;overflow-x:auto}"
+    "pre.file{white-space:pre;max-width:100%}"
     "math[display=block]{margin:.7rem 0 .7rem 1.5rem;width:fit-content;"
     "overflow-x:auto;overflow-y:hidden;font-size:1.1rem;max-width:100%}"
     "thead th{white-space:normal;vertical-align:bottom}"
@@ -613,7 +615,8 @@ static const char preamble[] =
     "\\usepackage[margin=22mm]{geometry}\n"
     "\\graphicspath{{tex/}{./}}\n"
     "\\setlength{\\parindent}{0pt}\\setlength{\\parskip}{.6em}\n"
-    "\\emergencystretch=4em\n";
+    "\\emergencystretch=4em\n"
+    "\\renewcommand{\\labelitemi}{$\\bullet$}\n";
 
 static bool title(struct page *p, const char *text, struct err *err)
 {
