@@ -52,6 +52,10 @@ static const struct asked {
       0,
       { "$T/matrix.tsv", "$T/matrix.tsv", "$T/matrix.tsv" } },
     { "pvalues", "p-values %s", 0, { "$T/p.tsv", "$T/run.json", "$T/p.tsv" } },
+    { "series",
+      "series %s",
+      0,
+      { "$T/measured.tsv", "$T/measured.tsv --log", "$T/wide.tsv --log" } },
 };
 enum { KINDS = sizeof kinds / sizeof *kinds, SUBJECTS = 3 };
 
@@ -79,7 +83,10 @@ static int setup_files(void **state)
         ">made; mkdir b; for n in x y; do { echo 'REFERENCES: a page'; echo "
         "'DATA:'; echo '  - type: tabulated nk'; echo '    data: |'; for l in "
         "0.4 0.5 0.6 0.8; do echo \"        $l 1.$(echo $n | tr xy 36) 0.01\"; "
-        "done; } >b/$n.yml; done";
+        "done; } >b/$n.yml; done; printf 'curve\tM [1]\tL [W/(m² sr)]\terror\n"
+        "one & {odd}\t0\t1e-3\t0\none & {odd}\t1\t2.5\t3\ntwo\t1\t0\t.1\n"
+        "limit\t-\t3\t0\n' >measured.tsv; printf 'c\talpha [1]\tn\te\n"
+        "a\t.001\t5\t1\na\t0.5\t7\t.1\n' >wide.tsv";
     if (setup(state) != 0)
         return -1;
     quiet(files);
@@ -324,6 +331,17 @@ static void bad_files_are_refused_by_line(void **state)
     refused("echo '{}' >$T/bad.json; bsdf-plot p-values $T/bad.json",
             "bad.json", "expected");
     refused("bsdf-plot p-values /dev/null", "/dev/null", "no rows");
+    refused("bsdf-plot series $T/p.tsv", "2 columns", "expected 4");
+    refused("printf 'c\\tx\\ty\\te\\na\\t1\\t2\\t-1\\n' >$T/bad; bsdf-plot "
+            "series $T/bad",
+            "bad:2: e \"-1\"", "[0, ");
+    refused("printf 'c\\tx\\ty\\te\\na\\t-\\t2\\t1\\n' >$T/bad; bsdf-plot "
+            "series $T/bad",
+            "bad", "no point");
+    refused(
+        "{ printf 'c\\tx\\ty\\te\\n'; for i in 1 2 3 4 5 6 7 8 9; do printf "
+        "\"$i\\t1\\t2\\t1\\n\"; done; } >$T/bad; bsdf-plot series $T/bad",
+        "bad:10: \"9\"", "too many");
 #undef HEAD
 }
 
