@@ -132,6 +132,40 @@ static void the_same_for_any_threads(void **state)
          "cmp $T/t1.png $T/t5.png");
 }
 
+static double number_of(const char *name)
+{
+    char line[64];
+    snprintf(line, sizeof line, "\n%s\t", name);
+    const char *at = strstr(output, line);
+    assert_non_null(at);
+    return strtod(at + strlen(line), NULL);
+}
+
+/* A part alone is what it is of the whole, and errors shrink with samples. */
+static void measures(void **state)
+{
+    (void)state;
+    does("cd $T && bsdf-render --quiet -s 16 a.xml -f few.exr && bsdf-render "
+         "--quiet -s 16 a.xml -p 10 8 20 12 -f part.exr && bsdf-render --quiet "
+         "-s 256 a.xml -f many.exr");
+    does("bsdf-render --measure $T/part.exr");
+    const double mean = number_of("luminance"),
+                 error = number_of("luminance_error");
+    assert_true(mean > 0 && error > 0);
+    assert_close(number_of("samples"), 16, 0);
+    assert_close(error, sqrt(number_of("variance") / 240), 1e-6 * error);
+    does("bsdf-render --measure $T/few.exr -p 10 8 20 12");
+    assert_close(number_of("luminance"), mean, 0);
+    assert_close(number_of("luminance_error"), error, 0);
+    assert_close(number_of("width"), 20, 0);
+    does("bsdf-render --measure $T/few.exr -p 59 39 20 12");
+    assert_close(number_of("width") * number_of("height"), 1, 0);
+    does("bsdf-render --measure $T/few.exr");
+    const double all = number_of("luminance_error");
+    does("bsdf-render --measure $T/many.exr");
+    assert_close(number_of("luminance_error") / all, 0.25, 0.1);
+}
+
 static void compares(void **state)
 {
     (void)state;
@@ -144,6 +178,10 @@ static void compares(void **state)
         sh("cd $T && bsdf-render --compare a.exr c.exr --map z.png"), 1);
     print_message("%s", output);
     assert_int_equal(sh("test -s $T/z.png"), 0);
+    assert_int_equal(sh("cd $T && bsdf-render --compare a.exr c.exr --numbers"),
+                     1);
+    assert_has(output, "same\t0\n");
+    assert_has(output, "variance_ratio\t");
     does("cd $T && bsdf-render --quiet -s 64 a.xml -f a.png && bsdf-render "
          "--quiet -s 64 --seed 2 a.xml -f b.png && bsdf-render --compare a.png "
          "b.png --block 10");
@@ -219,6 +257,9 @@ static void wrong_requests(void **state)
     refused("a.xml -a 8 -1", "-a TOL -1", "[0, ");
     refused("a.xml -o 2", "-o 2", "[0, 1]");
     refused("a.xml -p 50 0 20 5", "20 x 5 at 50, 0", "60 x 40");
+    refused("--measure few.exr b.exr", "--measure", "one picture");
+    refused("--measure a.xml", "a.xml", "");
+    refused("--measure few.exr -p 500 0 1 1", "-p 500 0", "60 x 40");
     refused("a.xml -b 0.1", "-b 0.1", "focal distance");
     refused("a.xml -c a.xml", "a.xml", "number 1");
     refused("a.xml -e a.xml", "a.xml", "EXR");
@@ -304,6 +345,7 @@ int main(void)
         { "it writes pictures and says what it did", writes_pictures },
         { "a picture says how it was made", says_how_a_picture_was_made },
         { "threads do not change a picture", the_same_for_any_threads },
+        { "a picture and its parts are measured", measures },
         { "pictures are compared", compares },
         { "there are many ways to one picture", ways_to_the_same_picture },
         { "bounces add up", bounces_add_up },
