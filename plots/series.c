@@ -89,7 +89,10 @@ static bool series_read(struct series *s, const char *path, struct err *err)
                       path, r.columns);
     s->n = r.n;
     s->point = calloc(r.n, sizeof *s->point);
-    ok = ok && (s->point || err_set(err, "out of memory"));
+    if (!s->point) {
+        err_set(err, "out of memory");
+        ok = false;
+    }
     for (size_t i = 0; ok && i < r.n; i++)
         ok = point_of(s, &r, i, err);
     for (int k = 0; ok && k < 2; k++)

@@ -697,7 +697,7 @@ static char *join(char *first, char **line, size_t i, size_t k)
 static bool sequence(struct page *p, enum block kind, char **line, size_t n,
                      size_t *i, struct err *err)
 {
-    struct shown shown[ROW_MAX];
+    struct shown shown[ROW_MAX] = { { .caption = NULL } };
     char *text[ROW_MAX], *rest;
     int count = 0, columns = 0, owned = 0;
     bool ok = true;
@@ -726,7 +726,7 @@ static bool sequence(struct page *p, enum block kind, char **line, size_t n,
         fputs(p->tex ? "\\end{itemize}\n" : "</ul>\n", p->out);
     else if (kind == ROW)
         table_end(p);
-    else if (ok)
+    else if (ok && count > 0)
         ok = figures(p, shown, count, err);
     while (owned > 0)
         free(text[--owned]);
@@ -861,15 +861,19 @@ static bool run(const struct plot_request *r, struct figure_made *made,
     if (!place(&p, r->output, err))
         return false;
     beside(&p, numbers, "numbers.tsv", "");
+    errno = 0;
     char *text = html_file(r->file);
-    bool ok = text ||
-              err_set(err, "%s: cannot be read: %s", r->file, strerror(errno));
+    bool ok = text || err_set(err, "%s: cannot be read: %s", r->file,
+                              errno ? strerror(errno) : "it is empty");
     ok = ok && rows_read(&p.numbers, numbers, err);
     ok = ok && (p.name_column = rows_column(&p.numbers, "name", err)) >= 0 &&
          (p.value_column = rows_column(&p.numbers, "value", err)) >= 0;
     line = ok ? lines_of(text, &n) : NULL;
-    ok = ok && (line || err_set(err, "out of memory")) &&
-         write_page(&p, r->output, line, n, made, err);
+    if (ok && !line) {
+        err_set(err, "out of memory");
+        ok = false;
+    }
+    ok = ok && write_page(&p, r->output, line, n, made, err);
     if (p.report_name[0])
         recorded_clear(&p.report);
     rows_clear(&p.numbers);

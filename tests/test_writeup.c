@@ -73,7 +73,7 @@ static void an_interrupted_run_goes_on(void **state)
     (void)state;
     /* It is stopped in the middle of something. */
     sh("setsid " MAKE ">$T/first 2>&1 & while [ $(ls $T | grep -c "
-       "'\\.done$') -lt 3 ]; do sleep 0.05; done; kill -TERM -- -$!; wait $!");
+       "'\\.done$') -lt 3 ]; do sleep 0.05; done; kill -TERM -$!; wait $!");
     const int before = count("ls $T | grep -c '\\.done$' || true");
     const int all = count(MAKE "-n 2>/dev/null | grep -o '\\[[0-9]*/[0-9]*\\]' "
                                "| sed 's/.*\\/\\(.*\\)]/\\1/' | head -1");
@@ -218,7 +218,7 @@ static void what_is_missing_is_named(void **state)
     refused("= a\\nx `y\\n", "`y", "does not end");
     refused("= a\\n$$ \\\\frob\\n", "\\frob", "unknown command");
     refused("x\\n", "wrong.txt:1", "title");
-    refused("", "cannot be read", "wrong.txt");
+    refused("", "wrong.txt", "it is empty");
 }
 
 static void formulas_become_mathml(void **state)

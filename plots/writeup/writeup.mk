@@ -11,11 +11,11 @@ MAKEFLAGS += --no-builtin-rules
 .SUFFIXES:
 .SECONDARY:
 
-ROOT    ?= .
+ROOT    := .
 BIN     ?= build/bin
 DATA    := $(abspath $(BIN)/..)
 QUALITY ?= draft
-OUT     ?= $(DATA)/writeup/$(QUALITY)$(if $(COURSE_SCENES),-course)
+OUT     := $(DATA)/writeup/$(QUALITY)$(if $(COURSE_SCENES),-course)
 HERE    := $(ROOT)/plots/writeup
 
 # Pixels; samples a pixel of the spheres, of the roughnesses, of copper and of
