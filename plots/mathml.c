@@ -207,6 +207,15 @@ static bool is_function(const char *name)
     return false;
 }
 
+static bool factor_before(const struct reader *r)
+{
+    const char *p = r->at;
+    while (p > r->all && p[-1] == ' ')
+        p--;
+    return p > r->all &&
+           (isalnum((unsigned char)p[-1]) || p[-1] == '}' || p[-1] == ')');
+}
+
 /* An atom with what hangs on it. */
 static bool scripted(struct reader *r, FILE *out, struct err *err)
 {
@@ -215,6 +224,8 @@ static bool scripted(struct reader *r, FILE *out, struct err *err)
     FILE *mem = open_memstream(&base, &size);
     bool ok = mem || err_set(err, "out of memory");
     const bool letters = r->at[0] == '\\' && is_function(r->at + 1);
+    if (letters && factor_before(r))
+        fputs("<mspace width=\".17em\"/>", out);
     if (mem) {
         ok = atom(r, mem, err);
         fclose(mem);
