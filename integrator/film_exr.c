@@ -342,12 +342,12 @@ static bool check_channel(const struct channel *c,
                    ? err_set(err, "%s: channel %s is missing", path, c->name)
                    : true;
     const exr_pixel_type_t type = e->pixel_type;
-    if (c->type == EXR_PIXEL_UINT ? type != EXR_PIXEL_UINT
-                                  : type == EXR_PIXEL_UINT)
+    if (type == (c->type == EXR_PIXEL_UINT ? EXR_PIXEL_HALF : EXR_PIXEL_UINT))
         return err_set(err, "%s: channel %s is of %s, expected %s", path,
                        c->name, names[type],
-                       c->type == EXR_PIXEL_UINT ? names[EXR_PIXEL_UINT]
-                                                 : "float or half");
+                       c->type == EXR_PIXEL_UINT
+                           ? "32-bit whole numbers or float"
+                           : "float or half");
     if (e->x_sampling != 1 || e->y_sampling != 1)
         return err_set(err,
                        "%s: channel %s has a sample every %d x %d pixels, "

@@ -438,7 +438,8 @@ static void pictures_of_another_nature_are_refused(void **state)
         { { .type = EXR_PIXEL_FLOAT, .cropped = true },
           "not the display window" },
         { { .type = EXR_PIXEL_FLOAT, .half_count = true },
-          "channel count is of half, expected 32-bit whole numbers" },
+          "channel count is of half, expected 32-bit whole "
+          "numbers or float" },
     };
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
