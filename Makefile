@@ -389,7 +389,7 @@ $(B)/obj/%.h.alone: %.h Makefile
 .PHONY: valgrind
 valgrind: test ## the tests that malformed input goes through, under valgrind
 	@command -v valgrind >/dev/null || { echo "valgrind is missing" >&2; exit 2; }
-	@$(MAKE) --no-print-directory run-tests RUN='$(filter test_spec test_ior test_cli,$(TESTS))' \
+	@$(MAKE) --no-print-directory run-tests RUN='$(filter test_spec test_ior test_cli test_film,$(TESTS))' \
 	    WRAP='valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite,indirect'
 
 # By file as well with V=1.
