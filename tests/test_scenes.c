@@ -1082,7 +1082,7 @@ static void broken_mesh_files_are_named(void **state)
     (void)state;
     mesh_refused("mesh.ply", ply, "vertex 4", "vertex 1000000", "mesh.ply:4",
                  "1000000 of \"vertex\" are claimed");
-    mesh_refused("mesh.ply", ply, "face 2", "face 4000000000", "mesh.ply:8",
+    mesh_refused("mesh.ply", ply, "face 2", "face 4000000000", "mesh.ply:7",
                  "too short");
     mesh_refused("mesh.ply", ply, "face 2", "face -2", "mesh.ply:7",
                  "a name and a number");
@@ -1106,6 +1106,42 @@ static void broken_mesh_files_are_named(void **state)
                    "vertex_indices\nend_header\n1234567890";
     written("none.ply", claim, sizeof claim - 1);
     assert_small(path, "claimed", 8 << 10);
+}
+
+/* Of a text the last digits may be missing. */
+static void cut_off_mesh_files_are_refused(void **state)
+{
+    static const char head[] =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\n"
+        "property float x\nproperty float y\nproperty float z\n"
+        "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+    static const float xyz[] = { 0, 0, 0, 1, 0, 0, 1, 1, 0 };
+    static const int corner[2][3] = { { 0, 1, 2 }, { 2, 1, 0 } };
+    const struct meshfile_options o = { .to_world = affine_identity };
+    char text[sizeof head + sizeof xyz + 2 * 13], *to = text;
+    (void)state;
+    to = (char *)memcpy(to, head, sizeof head - 1) + sizeof head - 1;
+    to = (char *)memcpy(to, xyz, sizeof xyz) + sizeof xyz;
+    for (int i = 0; i < 2; i++) {
+        *to++ = 3;
+        to = (char *)memcpy(to, corner[i], 12) + 12;
+    }
+    const size_t size = (size_t)(to - text);
+    struct err err;
+    size_t bytes;
+    mesh_free(mesh_of(written("cut.ply", text, size), false));
+    for (size_t cut = 0; cut < size; cut++) {
+        const char *path = written("cut.ply", text, cut);
+        struct mesh *m = meshfile_read(path, &o, &bytes, &err);
+        if (m)
+            fail_msg("%zu of %zu bytes were taken", cut, size);
+        assert_has(err.text, "cut.ply");
+    }
+    for (size_t cut = 0; cut + 3 < sizeof ply; cut += 5) {
+        const char *path = written("cut.ply", ply, cut);
+        if (meshfile_read(path, &o, &bytes, &err))
+            fail_msg("%zu bytes were taken", cut);
+    }
 }
 
 /* Every byte that a mutation can touch, and what is left of files: nothing may
@@ -1338,6 +1374,8 @@ int main(void)
           what_is_wrong_in_an_xml_is_named },
         { "PLY and OBJ are what they say", mesh_files_are_what_they_say },
         { "broken mesh files are named", broken_mesh_files_are_named },
+        { "mesh files that are cut off are refused",
+          cut_off_mesh_files_are_refused },
         { "no mutilated file crashes", no_mutilated_file_crashes },
         { "transforms are what they say", transforms_are_what_they_say },
         { "compatibility has names", compatibility_has_names },
