@@ -898,8 +898,7 @@ static void shapes_keep_their_outside(void **state)
 {
     (void)state;
     static const char *const steps[] = {
-        "<scale z=\"3\"/><rotate y=\"1\" z=\"1\" angle=\"33\"/>"
-        "<translate x=\"2\"/>",
+        "<scale z=\"3\"/><rotate y=\"1\" angle=\"33\"/><translate x=\"2\"/>",
         "<scale x=\"-1\" z=\"3\"/><rotate x=\"1\" angle=\"77\"/>",
         "<matrix value=\"1 0 0 2 0 0 1 0 0 3 0 0 0 0 0 1\"/>",
     };
@@ -1080,7 +1079,7 @@ static void mesh_files_are_what_they_say(void **state)
 static void broken_mesh_files_are_named(void **state)
 {
     (void)state;
-    mesh_refused("mesh.ply", ply, "vertex 4", "vertex 1000000", "mesh.ply:4",
+    mesh_refused("mesh.ply", ply, "vertex 4", "vertex 1000000", "mesh.ply:3",
                  "1000000 of \"vertex\" are claimed");
     mesh_refused("mesh.ply", ply, "face 2", "face 4000000000", "mesh.ply:7",
                  "too short");
