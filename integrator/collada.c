@@ -311,7 +311,7 @@ static struct mesh *mesh_make(struct dae *d, const xmlNode *polygons,
                               const struct affine *world, struct err *err)
 {
     struct err why;
-    if (!loader_budget(d->l, polygons, f->count / 3, c->count / 3, 0, err))
+    if (!loader_budget(d->l, polygons, f->count / 3, c->count / 3, NULL, err))
         return NULL;
     struct mesh *m = mesh_new(f->count / 3, c->count / 3, false, &why);
     if (!m) {

@@ -232,8 +232,9 @@ static struct mesh *convert(const struct aiScene *a, const char *path,
 
 struct mesh *meshfile_read(const char *path,
                            const struct meshfile_options *options,
-                           size_t *bytes, struct err *err)
+                           struct err *err)
 {
+    size_t bytes;
     const char *ending = strrchr(path, '.');
     const bool ply = ending && strcasecmp(ending, ".ply") == 0;
     struct mesh *m = NULL;
@@ -241,14 +242,14 @@ struct mesh *meshfile_read(const char *path,
         err_set(err, "%s: expected a name that ends in .ply or .obj", path);
         return NULL;
     }
-    char *text = xml_read_file(path, bytes, err);
+    char *text = xml_read_file(path, &bytes, err);
     if (!text)
         return NULL;
-    if (*bytes == 0)
+    if (bytes == 0)
         err_set(err, "%s: it is empty", path);
-    else if (!ply || ply_check(path, text, *bytes, err)) {
+    else if (!ply || ply_check(path, text, bytes, err)) {
         const struct aiScene *a = aiImportFileFromMemory(
-            text, (unsigned)*bytes, ply ? 0 : aiProcess_JoinIdenticalVertices,
+            text, (unsigned)bytes, ply ? 0 : aiProcess_JoinIdenticalVertices,
             ply ? "ply" : "obj");
         if (a)
             m = convert(a, path, options, err);
