@@ -310,9 +310,10 @@ static void a_report_is_whole_or_not_there(void **state)
         sh("bsdf-validate diffuse --samples 1e3 >/dev/full 2>/dev/null"), 2);
 }
 
-/* The README's tour, and what follows on a BSDF of one's own and on reports:
- * the commands of the sh blocks run in a folder that has build/bin and bsdf/
- * alone, and each line of the text blocks is a line they printed. */
+/* The README's tour, and what follows on a BSDF of one's own, reports,
+ * pictures: the commands of the sh blocks run in a folder that has build/bin,
+ * build/scenes and bsdf/ alone, and each line of the text blocks is a line they
+ * printed. */
 static void the_readmes_tour_runs(void **state)
 {
     (void)state;
@@ -330,7 +331,7 @@ static void the_readmes_tour_runs(void **state)
     while (fgets(line, sizeof line, readme)) {
         if (strncmp(line, "## ", 3) == 0)
             tour = strstr(line, "tour") || strstr(line, "Your own BSDF") ||
-                   strstr(line, "Reports");
+                   strstr(line, "Reports") || strstr(line, "Pictures");
         if (strncmp(line, "```", 3) == 0) {
             into = !tour || into                    ? NULL
                    : strcmp(line, "```sh\n") == 0   ? script
@@ -347,12 +348,13 @@ static void the_readmes_tour_runs(void **state)
     fclose(readme);
     assert_int_equal(fclose(script) | fclose(expected), 0);
     assert_true(commands >= 5 && lines >= 5);
-    char command[8500];
+    char command[16000];
     snprintf(command, sizeof command,
              "mkdir -p $T/empty/build && ln -s %s $T/empty/build/bin && "
+             "ln -s \"$(dirname %s)/scenes\" $T/empty/build/scenes && "
              "ln -s \"$PWD/bsdf\" $T/empty/bsdf && cd $T/empty && sh -e "
              "$T/tour.sh >$T/printed 2>&1",
-             bin);
+             bin, bin);
     if (sh(command) != 0) {
         sh("tail -n 20 $T/printed");
         fail_msg("the tour failed: %s", output);
