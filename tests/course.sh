@@ -37,7 +37,7 @@ against() {
             'BEGIN { print (r > .98 && r < 1.02 && c > .99) ? "ok" : "FAILS" }')
         # The lamp alone: every block is dark or clipped.
         [ "$ratio" != nan ] || verdict=$(awk -v s="$same" \
-            'BEGIN { print s > 99.5 ? "ok" : "FAILS" }')
+            'BEGIN { print (s > 99.5) ? "ok" : "FAILS" }')
         [ "$verdict" = ok ] || bad=1
     fi
     printf '%-26s %-44s %7s %8s %8s %s\n' "$1" "$2" "$ratio" "$alike" "$same" \
