@@ -211,7 +211,8 @@ demo: setup ## from measured calcium to a verdict and pictures, in build/demo/
 
 .PHONY: gallery
 gallery: all ## draw the README's pictures again
-	cd plots/gallery && ../../$(BIN)/bsdf-plot histogram '$(CALCIUM)' --wo 45,0 -o histogram.svg
+	cd plots/gallery && ../../$(BIN)/bsdf-plot histogram '$(CALCIUM)' --wo 45,0 -o histogram.svg && \
+	    ../../$(BIN)/bsdf-plot fresnel conductor:material=Ca -o fresnel.svg
 
 # -- installing ---------------------------------------------------------------
 # What is installed looks for its tables below PREFIX: the one file that knows
