@@ -156,6 +156,7 @@ static void tex_sets_every_kind_in_the_documents_fonts(void **state)
         print_message("skipped: there is no pdflatex, or no pdffonts\n");
         skip();
     }
+    quiet("cd $T; ! grep -F 'U+' *-tex.tex *-tex.caption >&2");
     quiet("cd $T; { printf '%s\\n' '\\documentclass{article}' "
           "'\\usepackage{graphicx,color}' '\\begin{document}'; for t in "
           "*-tex.tex; do printf '%s\\n' '\\begin{figure}' "
