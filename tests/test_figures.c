@@ -223,6 +223,20 @@ static void a_width_is_that_of_the_picture(void **state)
     assert_whole_wide("wpng.png", 960);
 }
 
+/* Nor of what TeX is drawn under. */
+static void nothing_is_left_where_gnuplot_fails(void **state)
+{
+    (void)state;
+    quiet("mkdir $T/fails; cd $T/fails; echo 'no such command' >s.gp");
+    assert_int_equal(sh("cd $T/fails; bsdf-plot lobe diffuse --wo 20,0 --style "
+                        "s.gp -o x.tex 2>&1 >made"),
+                     2);
+    assert_has(output, "no such command");
+    assert_has(output, "gnuplot failed");
+    quiet("cd $T/fails; [ \"$(ls | tr '\\n' ' ')\" = 'made s.gp x.caption x.gp "
+          "x.tsv ' ]; rm -r $T/fails");
+}
+
 static void a_style_has_the_last_word(void **state)
 {
     (void)state;
@@ -310,6 +324,7 @@ static void options_that_a_kind_has_no_use_for_are_refused(void **state)
     refused("bsdf-plot lobe diffuse --wo 1,0 --width 10", "--width", "40");
     refused("bsdf-plot lobe diffuse --wo 1,0 --phi north", "north", "--phi");
     refused("bsdf-plot lobe diffuse --wo 1,0 -o a_b.tex", "a_b.tex", "TeX");
+    refused("bsdf-plot report $T/run.json --width 100", "--width", "report");
     refused("bsdf-plot ndf diffuse", "diffuse", "microfacet");
     refused("bsdf-plot fresnel diffuse", "diffuse", "metal or glass");
     refused("bsdf-plot slice mirror", "mirror", "nothing to draw");
@@ -464,6 +479,12 @@ static void a_cut_is_at_the_azimuth_that_was_asked_for(void **state)
     }
     bsdf_free(b);
     free(t.value);
+    /* The plane of incidence, seen from the other side. */
+    quiet(
+        "cd $T; bsdf-plot lobe roughconductor --wo 40,20 --phi 20 -o cut.svg; "
+        "grep -q 'φ = 20°, positive toward it' cut.svg; ! grep -q 'not in "
+        "it' cut.svg; bsdf-plot lobe roughconductor --wo 40,20 --phi 200 -o "
+        "cut.svg; grep -q 'negative on the side of ωₒ' cut.svg");
 }
 
 /* Whatever the chart, the same samples are counted against the same pdf. */
@@ -569,6 +590,8 @@ int main(void)
           the_same_request_gives_the_same_bytes },
         { "a TeX figure redraws itself", a_tex_figure_redraws_itself },
         { "a width is that of the picture", a_width_is_that_of_the_picture },
+        { "nothing is left where gnuplot fails",
+          nothing_is_left_where_gnuplot_fails },
         { "a style has the last word", a_style_has_the_last_word },
         { "a caption says how it was made", a_caption_says_how_it_was_made },
         { "a window is opened, or one line says why not",

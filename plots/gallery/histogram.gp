@@ -4,7 +4,7 @@ set angles degrees
 table = "./histogram" . ".tsv"
 if (!exists("picture")) picture = "./histogram" . ".svg"
 degree = "°"
-set terminal svg size 800,464 noenhanced font "sans-serif,12" fontscale 1 linewidth 1 background "#ffffff"
+set terminal svg size 800,464 noenhanced font "sans-serif,12" linewidth 1 background "#ffffff"
 set output picture
 if (exists("window")) { set output; eval("set terminal " . window) }
 set linetype 1 lc rgb "#D55E00" dt 1 lw 2.2
