@@ -74,9 +74,9 @@ HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
 # Loops over lanes, which see more of the registers with -O3.
 ifeq ($(config),release)
 LANED    := $(patsubst %,$(B)/obj/%.o,bsdf/diffuse bsdf/facets bsdf/rng \
-              bsdf/roughconductor bsdf/roughdielectric validate/partition \
+              bsdf/roughconductor bsdf/roughdielectric \
               tests/bench validate/partition validate/quadrature \
-              validate/sphere validate/survey)
+              validate/sphere validate/subject validate/survey)
 $(LANED): FLAGS += -O3
 endif
 

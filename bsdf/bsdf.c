@@ -554,3 +554,42 @@ double bsdf_facet_g1(const struct bsdf *b, struct vec3 w)
 {
     return b->type->facet_g1(b->state, w);
 }
+
+bool bsdf_index(const struct bsdf *b, struct spectrum *eta, struct spectrum *k)
+{
+    if (b->type->index)
+        b->type->index(b->state, eta, k);
+    return b->type->index;
+}
+
+char *bsdf_spec_with(const char *spec, const char *key, const char *value,
+                     struct err *err)
+{
+    const size_t name = strcspn(spec, ":");
+    struct setting *s = malloc(sizeof *s);
+    char *made = NULL, between = ':';
+    size_t size;
+    FILE *out = s ? open_memstream(&made, &size) : NULL;
+    bool ok = out || err_set(err, "out of memory");
+    if (ok)
+        fprintf(out, "%.*s", (int)name, spec);
+    for (const char *at = spec + name + (spec[name] == ':'); ok && *at;) {
+        const char *from = at;
+        ok = setting_read(&at, s, spec, err);
+        if (!ok || strcmp(s->key, key) == 0)
+            continue;
+        const size_t n = (size_t)(at - from) - (at[-1] == ',' && *at);
+        fprintf(out, "%c%.*s", between, (int)n, from);
+        between = ',';
+    }
+    if (ok && value)
+        fprintf(out, "%c%s=%s", between, key, value);
+    if (out && fclose(out) != 0 && ok)
+        ok = err_set(err, "out of memory");
+    free(s);
+    if (!ok) {
+        free(made);
+        made = NULL;
+    }
+    return made;
+}

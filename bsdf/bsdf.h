@@ -104,6 +104,10 @@ struct bsdf_type {
     double (*facet_d)(const void *state, struct vec3 m);
     double (*facet_g1)(const void *state, struct vec3 w);
 
+    /* A model of one interface shows its index eta + i k in each band, of what
+     * is below over what is above. */
+    void (*index)(const void *state, struct spectrum *eta, struct spectrum *k);
+
     /* For a model that is computed elsewhere, as by another program: tells and
      * forgets the first thing that went wrong in calls of this thread since it
      * was asked last; false if nothing did.  Values that could not be had are
@@ -146,6 +150,12 @@ struct bsdf *bsdf_new_around(const struct bsdf_type *type, const char *spec,
 
 void bsdf_free(struct bsdf *b); /* NULL is fine */
 
+/** A spec with one of its settings another, as it would stand there, or without
+ * it where value is NULL.  NULL and the reason where its settings make no
+ * sense; owned by the caller. */
+char *bsdf_spec_with(const char *spec, const char *key, const char *value,
+                     struct err *err);
+
 const struct bsdf_type *bsdf_type(const struct bsdf *b);
 const struct bands *bsdf_bands(const struct bsdf *b);
 const char *bsdf_spec(const struct bsdf *b); /* as given */
@@ -186,5 +196,9 @@ bool bsdf_trouble(const struct bsdf *b, struct err *what);
 bool bsdf_has_facets(const struct bsdf *b);
 double bsdf_facet_d(const struct bsdf *b, struct vec3 m);
 double bsdf_facet_g1(const struct bsdf *b, struct vec3 w);
+
+/** The index of a model's interface, relative, in each band; false where it
+ * shows none. */
+bool bsdf_index(const struct bsdf *b, struct spectrum *eta, struct spectrum *k);
 
 #endif

@@ -73,6 +73,51 @@ bool cli_ior_path(const char *path, struct err *err)
            err_set(err, "out of memory");
 }
 
+enum { OPT_NM = 0x1000, OPT_RGB, OPT_IOR_PATH, OPT_SEED };
+
+static const struct argp_option options[] = {
+    { "nm", OPT_NM, "A,B,C", 0, "bands: one to four wavelengths", 0 },
+    { "rgb", OPT_RGB, "METHOD", 0,
+      "bands: R, G, B by fit (if neither is given), average or fixed:A,B,C",
+      0 },
+    { "ior-path", OPT_IOR_PATH, "DIR", 0,
+      "a refractiveindex.info database (or BSDF_IOR_PATH)", 0 },
+    { "seed", OPT_SEED, "S", 0, "of the random numbers; 1", 0 },
+    { 0 },
+};
+
+static error_t option(int key, char *arg, struct argp_state *state)
+{
+    struct cli_shared *r = state->input;
+    struct err err;
+    bool ok;
+    switch (key) {
+    case OPT_NM:
+        r->given = "nm";
+        ok = r->has_bands = bands_parse(&r->bands, arg, &err);
+        break;
+    case OPT_RGB:
+        r->given = "rgb";
+        r->all = r->compares && strcmp(arg, "all") == 0;
+        ok = r->has_bands = r->all || bands_parse_rgb(&r->bands, arg, &err);
+        break;
+    case OPT_IOR_PATH:
+        ok = cli_ior_path(arg, &err);
+        break;
+    case OPT_SEED:
+        r->given = "seed";
+        ok = cli_count(&r->seed, "--seed", arg, 0, INT64_MAX, &err);
+        break;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+    if (!ok)
+        argp_failure(state, EXIT_REQUEST, 0, "%s", err.text);
+    return 0;
+}
+
+const struct argp cli_shared_argp = { options, option, 0, 0, 0, 0, 0 };
+
 double cli_elapsed(void)
 {
     static double first = -1;

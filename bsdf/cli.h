@@ -5,6 +5,7 @@
 #ifndef BSDF_CLI_H
 #define BSDF_CLI_H
 
+#include <argp.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -30,6 +31,18 @@ bool cli_number(double *x, const char *what, const char *text, double min,
 /** Makes a database folder the one that material names are looked up in, by
  * setting BSDF_IOR_PATH for this process; the folder must be there. */
 bool cli_ior_path(const char *path, struct err *err);
+
+/** --nm, --rgb, --ior-path and --seed, as a child of a program's own parser;
+ * its input is one of these, with the defaults in it. */
+struct cli_shared {
+    struct bands bands;
+    uint64_t seed;
+    bool compares;     /* wanted: "--rgb all" is a method as well */
+    bool all;          /* --rgb all was given */
+    bool has_bands;    /* --nm or --rgb was given */
+    const char *given; /* "nm", "rgb" or "seed", the last that was; or NULL */
+};
+extern const struct argp cli_shared_argp;
 
 /** Seconds since the first call. */
 double cli_elapsed(void);

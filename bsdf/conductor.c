@@ -53,6 +53,14 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
     return s;
 }
 
+static void index_of(const void *state, struct spectrum *eta,
+                     struct spectrum *k)
+{
+    const struct conductor *m = state;
+    *eta = m->eta;
+    *k = m->k;
+}
+
 const struct bsdf_type type_conductor = {
     .name = "conductor",
     .about = "smooth metal",
@@ -61,4 +69,5 @@ const struct bsdf_type type_conductor = {
     .claims = claims,
     .sample = sample,
     .init = init,
+    .index = index_of,
 };

@@ -143,6 +143,14 @@ static double facet_g1(const void *state, struct vec3 w)
     return 1 / (1 + lambda(state, w));
 }
 
+static void index_of(const void *state, struct spectrum *eta,
+                     struct spectrum *k)
+{
+    const struct course_microfacet *m = state;
+    *eta = m->eta;
+    *k = m->k;
+}
+
 const struct bsdf_type type_course_microfacet = {
     .name = "course_microfacet",
     .about = "rough metal as in the course, faults included",
@@ -153,6 +161,7 @@ const struct bsdf_type type_course_microfacet = {
     .pdf = pdf,
     .sample = sample,
     .init = init,
+    .index = index_of,
     .facet_d = facet_d,
     .facet_g1 = facet_g1,
 };

@@ -112,6 +112,14 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
     };
 }
 
+static void index_of(const void *state, struct spectrum *eta,
+                     struct spectrum *k)
+{
+    const struct dielectric *m = state;
+    *eta = spectrum_of(BANDS_MAX, m->eta);
+    *k = spectrum_of(BANDS_MAX, 0);
+}
+
 const struct bsdf_type type_dielectric = {
     .name = "dielectric",
     .about = "smooth glass",
@@ -120,4 +128,5 @@ const struct bsdf_type type_dielectric = {
     .claims = claims,
     .sample = sample,
     .init = init,
+    .index = index_of,
 };

@@ -14,25 +14,19 @@
 #include "bsdf/rng.h"
 
 enum {
-    OPT_NM = 1,
-    OPT_RGB,
-    OPT_AS,
+    OPT_AS = 1,
     OPT_MATCH,
-    OPT_IOR_PATH,
     OPT_WO,
-    OPT_SEED,
 };
 
 struct request {
-    struct bands bands;
+    struct cli_shared shared;
     struct vec3 wo;
     bool has_wo;
-    bool has_bands; /* --nm or --rgb was given */
-    bool all;       /* --rgb all */
-    int as;         /* enum export_format, or -1 */
+    int as; /* enum export_format, or -1 */
     const char *match;
-    uint64_t count, seed; /* count is 0 where it was not given */
-    const char *arg[3];   /* the command and its arguments */
+    uint64_t count;     /* 0 where it was not given */
+    const char *arg[3]; /* the command and its arguments */
     int args;
 };
 
@@ -65,18 +59,11 @@ static const char about[] =
     "or 2 if the request was wrong.";
 
 static const struct argp_option options[] = {
-    { "nm", OPT_NM, "A,B,C", 0, "bands: one to four wavelengths", 0 },
-    { "rgb", OPT_RGB, "METHOD", 0,
-      "bands: R, G, B by fit (if neither is given), average or fixed:A,B,C",
-      0 },
     { "as", OPT_AS, "FORMAT", 0, "mitsuba, pbrt, openpbr-f82 or cpp", 0 },
     { "match", OPT_MATCH, "ETA", 0, "three values A/B/C, and K behind it", 0 },
-    { "ior-path", OPT_IOR_PATH, "DIR", 0,
-      "a refractiveindex.info database (or BSDF_IOR_PATH)", 0 },
     { "wo", OPT_WO, "THETA,PHI", 0, "outgoing direction [deg]", 0 },
     { "count", 'n', "N", 0,
       "how many samples, 1 to 1e12; 10, or 1e6 for an albedo", 0 },
-    { "seed", OPT_SEED, "S", 0, "of the random numbers; 1", 0 },
     { 0 },
 };
 
@@ -86,12 +73,8 @@ static error_t option(int key, char *arg, struct argp_state *state)
     struct err err;
     bool ok = true;
     switch (key) {
-    case OPT_NM:
-        ok = r->has_bands = bands_parse(&r->bands, arg, &err);
-        break;
-    case OPT_RGB:
-        r->all = strcmp(arg, "all") == 0;
-        ok = r->has_bands = r->all || bands_parse_rgb(&r->bands, arg, &err);
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &r->shared;
         break;
     case OPT_AS:
         for (r->as = 0; export_names[r->as]; r->as++)
@@ -103,17 +86,11 @@ static error_t option(int key, char *arg, struct argp_state *state)
     case OPT_MATCH:
         r->match = arg;
         break;
-    case OPT_IOR_PATH:
-        ok = cli_ior_path(arg, &err);
-        break;
     case OPT_WO:
         ok = r->has_wo = cli_direction(&r->wo, arg, &err);
         break;
     case 'n':
         ok = cli_count(&r->count, "-n", arg, 1, 1000000000000, &err);
-        break;
-    case OPT_SEED:
-        ok = cli_count(&r->seed, "--seed", arg, 0, INT64_MAX, &err);
         break;
     case ARGP_KEY_ARG:
         if (r->args == 3)
@@ -145,11 +122,11 @@ static void bands_comment(const struct bands *bands)
 /* The model of a request; its warning, if any, goes to standard error. */
 static struct bsdf *made(const struct request *r, struct err *err)
 {
-    if (r->all) {
+    if (r->shared.all) {
         err_set(err, "--rgb all compares optical constants: expected ior NAME");
         return NULL;
     }
-    struct bsdf *b = bsdf_new(r->arg[1], &r->bands, err);
+    struct bsdf *b = bsdf_new(r->arg[1], &r->shared.bands, err);
     if (b && err->text[0])
         fprintf(stderr, "bsdf-info: warning: %s\n", err->text);
     return b;
@@ -288,7 +265,7 @@ static bool eval(const struct request *r, struct err *err)
     bool ok = in || err_set(err, "%s: %s", r->arg[2], strerror(errno));
     if (ok) {
         printf("# %s\n", bsdf_spec(b));
-        bands_comment(&r->bands);
+        bands_comment(&r->shared.bands);
         printf("# theta_o\tphi_o\ttheta_i\tphi_i [deg]\tf [1/sr] per band\t"
                "pdf [1/sr]\n");
         ok = eval_lines(b, in, from_file ? r->arg[2] : "standard input", err);
@@ -308,18 +285,18 @@ static bool sample(const struct request *r, struct err *err)
     struct bsdf *b = made(r, err);
     if (!b)
         return false;
-    const struct rng rng = { r->seed, 0 };
+    const struct rng rng = { r->shared.seed, 0 };
     printf("# %s\n", bsdf_spec(b));
-    bands_comment(&r->bands);
+    bands_comment(&r->shared.bands);
     printf("# seed: %" PRIu64 "; a row of zeros is a refused sample\n",
-           r->seed);
+           r->shared.seed);
     printf("# wi.x\twi.y\twi.z\tpdf [1/sr]\tweight per band\tdelta\n");
     const uint64_t count = r->count ? r->count : 10;
     for (uint64_t i = 0; i < count && !ferror(stdout); i++) {
         const struct bsdf_sample s = bsdf_sample(b, r->wo, rng_uniform(rng, i));
         const double row[4] = { s.wi.x, s.wi.y, s.wi.z, s.pdf };
         numbers_print(row, 4, '\t');
-        numbers_print(s.weight.band, r->bands.count, '\t');
+        numbers_print(s.weight.band, r->shared.bands.count, '\t');
         printf("%d\n", s.delta);
     }
     bsdf_free(b);
@@ -355,7 +332,8 @@ static void page_comments(const struct ior_page *page)
 static bool constants(const struct request *r, const struct ior_page *page,
                       struct err *err)
 {
-    const struct bands *bands = r->has_bands ? &r->bands : &bands_fixed;
+    const struct bands *bands =
+        r->shared.has_bands ? &r->shared.bands : &bands_fixed;
     double n[BANDS_MAX], k[BANDS_MAX];
     for (int b = 0; b < bands->count; b++)
         if (!ior_page_at(page, bands->nm[b], &n[b], &k[b], err))
@@ -390,12 +368,12 @@ static bool colours(const struct request *r, const struct cie *cie,
     struct bands way[3] = { bands_fixed,
                             { 3, { 0 }, BANDS_RGB_AVERAGE },
                             { 3, { 0 }, BANDS_RGB_FIT } };
-    if (!r->all)
-        way[0] = r->bands;
+    if (!r->shared.all)
+        way[0] = r->shared.bands;
     page_comments(page);
     printf("# method\teta R\tG\tB\tk R\tG\tB\tF0 R\tG\tB (linear sRGB, D65)\t"
            "CIEDE2000 from the spectral colour\n");
-    for (int i = 0; i < (r->all ? 3 : 1); i++) {
+    for (int i = 0; i < (r->shared.all ? 3 : 1); i++) {
         static const enum colour_method method[] = {
             [BANDS_NM] = COLOUR_FIXED,
             [BANDS_RGB_AVERAGE] = COLOUR_AVERAGE,
@@ -497,7 +475,8 @@ static bool ior(const struct request *r, struct err *err)
     struct cie *cie = malloc(sizeof *cie);
     struct ior_page *page = cie ? ior_find(r->arg[1], NULL, err)
                                 : (err_set(err, "out of memory"), NULL);
-    const bool rgb = r->all || (r->has_bands && r->bands.kind != BANDS_NM);
+    const bool rgb = r->shared.all ||
+                     (r->shared.has_bands && r->shared.bands.kind != BANDS_NM);
     bool ok = page;
     if (ok && (rgb || r->as >= 0))
         ok = cie_load(cie, err);
@@ -538,10 +517,10 @@ static bool albedo(const struct request *r, struct err *err)
     struct bsdf *b = made(r, err);
     if (!b)
         return false;
-    const int bands = r->bands.count;
+    const int bands = r->shared.bands.count;
     const uint64_t count = r->count ? r->count : 1000000;
     const double eta = bsdf_claims(b).eta;
-    const struct rng rng = { r->seed, 0 };
+    const struct rng rng = { r->shared.seed, 0 };
     double sum[2][BANDS_MAX] = { { 0 } }, square[2][BANDS_MAX] = { { 0 } };
     for (uint64_t i = 0; i < count; i++) {
         const struct bsdf_sample s = bsdf_sample(b, r->wo, rng_uniform(rng, i));
@@ -556,14 +535,14 @@ static bool albedo(const struct request *r, struct err *err)
             }
     }
     printf("# %s\n", bsdf_spec(b));
-    bands_comment(&r->bands);
-    printf("# seed: %" PRIu64 "; mean weight of %" PRIu64 " samples\n", r->seed,
-           count);
+    bands_comment(&r->shared.bands);
+    printf("# seed: %" PRIu64 "; mean weight of %" PRIu64 " samples\n",
+           r->shared.seed, count);
     printf("# band\tenergy\t+-\tradiance\t+-\n");
     for (int k = 0; k < bands; k++) {
         char name[32];
         const double n = (double)count;
-        bands_print_one(&r->bands, k, name, sizeof name);
+        bands_print_one(&r->shared.bands, k, name, sizeof name);
         printf("%s", name);
         for (int radiance = 0; radiance < 2; radiance++) {
             const double mean = sum[radiance][k] / n;
@@ -588,12 +567,17 @@ int main(int argc, char **argv)
     enum { COMMANDS = sizeof command / sizeof *command };
     static const char *const names[] = { "list", "eval", "sample", "albedo",
                                          "ior",  "cite", NULL };
-    struct request r = { .bands = bands_default, .as = -1, .seed = 1 };
+    struct request r = {
+        .shared = { .bands = bands_default, .seed = 1, .compares = true },
+        .as = -1
+    };
     struct err err;
     gsl_set_error_handler_off();
     argp_err_exit_status = EXIT_REQUEST;
     argp_parse(&(struct argp){ options, option, "COMMAND [ARGUMENT...]", about,
-                               0, 0, 0 },
+                               (const struct argp_child[]){
+                                   { &cli_shared_argp, 0, 0, 0 }, { 0 } },
+                               0, 0 },
                argc, argv, 0, NULL, &r);
     int i = 0;
     while (i < COMMANDS && strcmp(command[i].name, r.arg[0]) != 0)

@@ -220,6 +220,7 @@ struct lanes {
     double lo[LANES_MAX], g1[LANES_MAX]; /* of wo: lambda, g1_per_cos */
     double cos_d[LANES_MAX], shape[LANES_MAX];
     double hx[LANES_MAX], hy[LANES_MAX], hz[LANES_MAX];
+    bool one; /* all wo of the call are the same */
 };
 
 LANES static void g1_lanes(size_t n, struct dirs wo, struct lanes *l)
@@ -229,16 +230,21 @@ LANES static void g1_lanes(size_t n, struct dirs wo, struct lanes *l)
         l->g1[i] = g1_per_cos(dirs_at(wo, i), l->lo[i]);
 }
 
-/* What depends on wo alone, once if there is but one. */
-static void look(const struct roughconductor *m, size_t n, struct dirs wo,
-                 struct lanes *l)
+/* What depends on wo alone of the next k directions of a call for n, from `at`
+ * on; once if all n are the same. */
+static void look(const struct roughconductor *m, size_t n, size_t at, size_t k,
+                 struct dirs wo, struct lanes *l)
 {
-    const bool one = dirs_same(n, wo);
-    facets_lambda_many(m->facets, one ? 1 : n, wo, l->lo);
-    g1_lanes(one ? 1 : n, wo, l);
-    if (one) {
-        facets_fill(n, l->lo);
-        facets_fill(n, l->g1);
+    if (at == 0)
+        l->one = dirs_same(n, wo);
+    if (l->one && at > 0)
+        return;
+    const struct dirs o = dirs_from(wo, at);
+    facets_lambda_many(m->facets, l->one ? 1 : k, o, l->lo);
+    g1_lanes(l->one ? 1 : k, o, l);
+    if (l->one) {
+        facets_fill(k, l->lo);
+        facets_fill(k, l->g1);
     }
 }
 
@@ -394,7 +400,7 @@ static void eval_many(const void *state, size_t n, struct dirs wo,
     for (size_t at = 0, k; at < n; at += k) {
         const struct dirs o = dirs_from(wo, at), i = dirs_from(wi, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
-        look(m, k, o, &l);
+        look(m, n, at, k, wo, &l);
         shape_lanes(m, k, o, i, &l);
         tint_lanes(m, k, &l,
                    (double *const[]){ band[0], band[1], band[2], band[3] });
@@ -413,7 +419,7 @@ static void pdf_many(const void *state, size_t n, struct dirs wo,
     for (size_t at = 0, k; at < n; at += k) {
         const struct dirs o = dirs_from(wo, at), i = dirs_from(wi, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
-        look(m, k, o, &l);
+        look(m, n, at, k, wo, &l);
         if (m->sample_visible)
             density_visible(m->facets, k, o, i, &l, p + at);
         else
@@ -429,7 +435,7 @@ static void sample_many(const void *state, size_t n, struct dirs wo,
     for (size_t at = 0, k; at < n; at += k) {
         const struct dirs o = dirs_from(wo, at), v = dirs_from(u, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
-        look(m, k, o, &l);
+        look(m, n, at, k, wo, &l);
         const struct bsdf_samples to = bsdf_samples_from(&out, at);
         if (m->sample_visible) {
             facets_visible_many(m->facets, k, o, v, l.hx, l.hy, l.hz);
@@ -458,6 +464,14 @@ static double facet_g1(const void *state, struct vec3 w)
     return 1 / (1 + facets_lambda(m->facets, w));
 }
 
+static void index_of(const void *state, struct spectrum *eta,
+                     struct spectrum *k)
+{
+    const struct roughconductor *m = state;
+    *eta = m->eta;
+    *k = m->k;
+}
+
 const struct bsdf_type type_roughconductor = {
     .name = "roughconductor",
     .about = "rough metal (Torrance-Sparrow, Smith)",
@@ -468,6 +482,7 @@ const struct bsdf_type type_roughconductor = {
     .pdf = pdf,
     .sample = sample,
     .init = init,
+    .index = index_of,
     .facet_d = facet_d,
     .facet_g1 = facet_g1,
     .eval_many = eval_many,

@@ -332,6 +332,14 @@ static double facet_g1(const void *state, struct vec3 w)
     return 1 / (1 + facets_lambda(m->facets, w));
 }
 
+static void index_of(const void *state, struct spectrum *eta,
+                     struct spectrum *k)
+{
+    const struct roughdielectric *m = state;
+    *eta = spectrum_of(BANDS_MAX, m->eta);
+    *k = spectrum_of(BANDS_MAX, 0);
+}
+
 const struct bsdf_type type_roughdielectric = {
     .name = "roughdielectric",
     .about = "rough glass (Walter et al., Smith)",
@@ -342,6 +350,7 @@ const struct bsdf_type type_roughdielectric = {
     .pdf = pdf,
     .sample = sample,
     .init = init,
+    .index = index_of,
     .facet_d = facet_d,
     .facet_g1 = facet_g1,
     .eval_many = eval_many,

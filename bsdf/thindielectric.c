@@ -68,6 +68,14 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
                                  .delta = true };
 }
 
+static void index_of(const void *state, struct spectrum *eta,
+                     struct spectrum *k)
+{
+    const struct thindielectric *m = state;
+    *eta = spectrum_of(BANDS_MAX, m->eta);
+    *k = spectrum_of(BANDS_MAX, 0);
+}
+
 const struct bsdf_type type_thindielectric = {
     .name = "thindielectric",
     .about = "thin pane of glass",
@@ -76,4 +84,5 @@ const struct bsdf_type type_thindielectric = {
     .claims = claims,
     .sample = sample,
     .init = init,
+    .index = index_of,
 };

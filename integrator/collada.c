@@ -23,6 +23,7 @@
  * the light, and <area> counts only where there is none in its place; with
  * COMPAT_LIGHT_QUAD it is the other way round.
  */
+#include <float.h>
 #include <libxml/hash.h>
 #include <stdlib.h>
 #include <string.h>
@@ -124,6 +125,11 @@ static bool floats_read(const xmlNode *node, struct floats *f, struct err *err)
         if (!xml_real(&n, &value, err) ||
             !room((void **)&f->at, f->count, node, err))
             return false;
+        if (!(fabs(value) <= (double)FLT_MAX))
+            return xml_fail(node, err,
+                            "number %zu is %g: expected one that a float can "
+                            "hold",
+                            n.count, value);
         f->at[f->count++] = (float)value;
     }
     return true;

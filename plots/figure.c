@@ -1,39 +1,17 @@
-/* figure.c - three files side by side */
+/* figure.c - files side by side */
 #include "plots/figure.h"
 
 #include <errno.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "bsdf/utf8.h"
-
-/* gnuplot's settings for a page of %g by %g pixels, such that letters and lines
- * look the same in all three.  Viewers of SVG blur an image, and cairo leaves
- * gaps between the rectangles that take its place there. */
-struct figure_form {
-    const char *extension, *terminal;
-    double scale; /* of the lengths that the terminal wants */
-    const char *cells;
-};
-
-static const struct figure_form forms[] = {
-    { ".svg",
-      "svg size %.6g,%.6g noenhanced font \"sans-serif,12\" background "
-      "\"#ffffff\"",
-      1, "image pixels" },
-    { ".pdf",
-      "pdfcairo size %.6g,%.6g noenhanced font \"sans-serif,12\" fontscale "
-      "0.75 linewidth 2 background \"#ffffff\"",
-      1 / 72., "image" },
-    { ".png",
-      "pngcairo size %.6g,%.6g noenhanced font \"sans-serif,12\" fontscale "
-      "1.55 linewidth 2 pointscale 2 background \"#ffffff\"",
-      2, "image" },
-};
-enum { FORMS = sizeof forms / sizeof *forms };
+#include "plots/text.h"
 
 enum { LINE_MAX = 100, LINES_MAX = 4, LINE_HEIGHT = 17 };
+enum { STYLE_MAX = 1 << 20 }; /* bytes */
 
 void figure_made_clear(struct figure_made *made)
 {
@@ -46,7 +24,20 @@ static void forget(struct figure *fig)
 {
     free(fig->folder);
     free(fig->stem);
+    free(fig->style);
     *fig = (struct figure){ 0 };
+}
+
+/* What TeX reads as a name whatever it has been told. */
+static bool tex_name(const char *path, const char *name, struct err *err)
+{
+    const size_t n = strlen(name) - strlen(".tex");
+    return strspn(name, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                        "0123456789-") >= n ||
+           err_set(err,
+                   "output \"%.200s\": expected a name of letters, digits and "
+                   "-, as TeX takes it",
+                   path);
 }
 
 /* "FOLDER/STEM.svg" into folder and "./STEM". */
@@ -54,19 +45,15 @@ static bool names(struct figure *fig, const char *path, struct err *err)
 {
     const char *slash = strrchr(path, '/');
     const char *name = slash ? slash + 1 : path;
-    const char *dot = strrchr(name, '.');
-    for (int i = 0; i < FORMS; i++)
-        if (dot && strcmp(dot, forms[i].extension) == 0)
-            fig->form = &forms[i];
+    fig->form = form_of(path, err);
     if (!fig->form)
-        return err_set(err,
-                       "output \"%.200s\": %s%.20s%s; expected .svg, .pdf or "
-                       ".png",
-                       path, dot ? "extension \"" : "no extension",
-                       dot ? dot : "", dot ? "\" is unknown" : "");
+        return false;
+    const char *dot = strrchr(name, '.');
     if (dot == name)
         return err_set(err, "output \"%.200s\": expected a name before %s",
                        path, dot);
+    if (fig->form->tex && !tex_name(path, name, err))
+        return false;
     fig->folder = slash == path ? strdup("/")
                   : slash       ? strndup(path, (size_t)(slash - path))
                                 : strdup(".");
@@ -88,15 +75,45 @@ static bool open_beside(struct figure *fig, struct outfile *out,
     return ok;
 }
 
-bool figure_open(struct figure *fig, const char *path, struct err *err)
+/* The style becomes a part of the script. */
+static bool style_read(struct figure *fig, struct err *err)
 {
-    *fig = (struct figure){ 0 };
-    if (names(fig, path, err) && outfile_open(&fig->picture, path, err) &&
+    const char *path = fig->look.style;
+    if (!path)
+        return true;
+    FILE *in = fopen(path, "r");
+    fig->style = in ? calloc(1, STYLE_MAX + 1) : NULL;
+    if (!in || !fig->style) {
+        if (in)
+            fclose(in);
+        return err_set(err, "--style %.200s: %s", path, strerror(errno));
+    }
+    const size_t n = fread(fig->style, 1, STYLE_MAX + 1, in);
+    const bool read = !ferror(in);
+    fclose(in);
+    if (!read)
+        return err_set(err, "--style %.200s: %s", path, strerror(errno));
+    if (n > STYLE_MAX || memchr(fig->style, '\0', n))
+        return err_set(err,
+                       "--style %.200s: %s; expected commands of gnuplot's",
+                       path, n > STYLE_MAX ? "more than 1 MiB" : "a zero byte");
+    return true;
+}
+
+bool figure_open(struct figure *fig, const char *path,
+                 const struct figure_look *look, struct err *err)
+{
+    *fig = (struct figure){ .look = *look };
+    if (names(fig, path, err) && style_read(fig, err) &&
+        outfile_open(&fig->picture, path, err) &&
+        (!fig->form->tex ||
+         open_beside(fig, &fig->graphic, path, ".pdf", err)) &&
         open_beside(fig, &fig->tables, path, ".tsv", err) &&
-        open_beside(fig, &fig->scripts, path, ".gp", err)) {
+        open_beside(fig, &fig->scripts, path, ".gp", err) &&
+        open_beside(fig, &fig->captions, path, ".caption", err)) {
         fig->table = fig->tables.stream;
         fig->script = fig->scripts.stream;
-        fig->cells = fig->form->cells;
+        fig->caption = fig->captions.stream;
         return true;
     }
     figure_abandon(fig);
@@ -105,12 +122,79 @@ bool figure_open(struct figure *fig, const char *path, struct err *err)
 
 void figure_abandon(struct figure *fig)
 {
-    struct outfile *const all[] = { &fig->picture, &fig->tables,
-                                    &fig->scripts };
-    for (int i = 0; i < 3; i++)
+    struct outfile *const all[] = { &fig->picture, &fig->graphic, &fig->tables,
+                                    &fig->scripts, &fig->captions };
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (all[i]->stream)
             outfile_abandon(all[i]);
     forget(fig);
+}
+
+/* -- text ------------------------------------------------------------------ */
+
+void figure_text(struct figure *fig, const char *text)
+{
+    char *tex = fig->form->tex ? text_tex(text) : NULL;
+    gnuplot_string(fig->script, tex ? tex : text);
+    free(tex);
+}
+
+void figure_label_at(struct figure *fig, const char *text, const char *where,
+                     ...)
+{
+    va_list args;
+    fputs("set label ", fig->script);
+    figure_text(fig, text);
+    fputs(" at ", fig->script);
+    va_start(args, where);
+    vfprintf(fig->script, where, args);
+    va_end(args);
+    fputc('\n', fig->script);
+}
+
+void figure_label(struct figure *fig, double x, double y, const char *aligned,
+                  const char *text)
+{
+    figure_label_at(fig, text, "screen %.6g,%.6g %s noenhanced", x / fig->width,
+                    y / fig->height, aligned);
+}
+
+static double scale_of(const struct figure *fig)
+{
+    const double mm = fig->look.width_mm;
+    return mm > 0 ? mm / 25.4 * 96 / fig->width : 1;
+}
+
+/* LaTeX is told of the size by a command. */
+void figure_small(struct figure *fig, double x, double y, const char *text)
+{
+    char *tex = fig->form->tex ? text_tex(text) : NULL, *sized = NULL;
+    const double pt = 9 * 9.5 / 12 * scale_of(fig);
+    if (tex && asprintf(&sized, "\\fontsize{%.4g}{%.4g}\\selectfont %s", pt,
+                        1.2 * pt, tex) < 0)
+        sized = NULL;
+    fputs("set label ", fig->script);
+    gnuplot_string(fig->script, sized ? sized : text);
+    fprintf(fig->script,
+            " at screen %.6g,%.6g left noenhanced font \",9.5\" tc rgb "
+            "\"#505050\"\n",
+            x / fig->width, y / fig->height);
+    free(sized);
+    free(tex);
+}
+
+void figure_caption(struct figure *fig, const char *format, ...)
+{
+    char *text, *tex;
+    va_list args;
+    va_start(args, format);
+    if (vasprintf(&text, format, args) < 0)
+        text = NULL;
+    va_end(args);
+    tex = text && fig->form->tex ? text_tex(text) : NULL;
+    fputs(tex ? tex : text ? text : "", fig->caption);
+    free(tex);
+    free(text);
 }
 
 /* How many bytes of a text make its next line: up to a comma, or cut. */
@@ -119,6 +203,8 @@ static size_t line_length(const char *text)
     size_t characters = 0, comma = 0, n = 0;
     for (; text[n]; n++) {
         const bool begins = ((unsigned char)text[n] & 0xc0) != 0x80;
+        if (text[n] == '\n')
+            return n;
         if (begins && characters++ == LINE_MAX)
             return comma > n / 2 ? comma : n;
         if (text[n] == ',')
@@ -127,69 +213,103 @@ static size_t line_length(const char *text)
     return n;
 }
 
-/* The spec in lines, as a string of the script; returns how many. */
-static int title_wrap(FILE *out, const char *spec)
+/* The lines of a title, a label each, upward from y. */
+struct title {
+    char *plain;
+    size_t from[LINES_MAX], length[LINES_MAX];
+    int lines;
+    bool cut;
+};
+
+static struct title title_wrap(const char *text)
 {
-    char *plain = utf8_plain(spec);
-    int lines = 0;
-    for (const char *at = plain ? plain : ""; *at && lines < LINES_MAX;
-         lines++) {
-        const size_t n = line_length(at);
-        fprintf(out, "%s%.*s", lines ? "\n" : "", (int)n, at);
-        at += n;
-        if (*at && lines + 1 == LINES_MAX)
-            fputs(" …", out);
+    struct title t = { .plain = NULL };
+    char *plain = NULL;
+    size_t size;
+    FILE *out = open_memstream(&plain, &size);
+    for (const char *at = text; out && *at;) { /* line by line */
+        const size_t n = strcspn(at, "\n");
+        char *part = strndup(at, n), *clean = part ? utf8_plain(part) : NULL;
+        fprintf(out, "%s%s", at > text ? "\n" : "", clean ? clean : "");
+        free(part);
+        free(clean);
+        at += n + (at[n] == '\n');
     }
-    free(plain);
-    return lines;
+    if (!out || fclose(out) != 0)
+        return t;
+    t.plain = plain;
+    for (const char *at = plain; *at && t.lines < LINES_MAX;) {
+        const size_t n = line_length(at);
+        t.from[t.lines] = (size_t)(at - plain);
+        t.length[t.lines++] = n;
+        at += n + (at[n] == '\n');
+        t.cut = *at;
+    }
+    return t;
 }
+
+/* -- the script ------------------------------------------------------------ */
+
+/* Vermillion, bluish green, blue, reddish purple, orange, sky blue of M. Okabe
+ * and K. Ito, Color Universal Design, 2008; black and a grey.  Each has a dash
+ * of its own.  The palettes are viridis, of S. van der Walt and N. Smith, and
+ * cividis, of J. Nunez, C. Anderton and R. Renslow, PLOS ONE 13(7), 2018: both
+ * rise in lightness, so that they can be read in grey. */
+static const char defaults[] =
+    "set linetype 1 lc rgb \"#D55E00\" dt 1 lw 2.2\n"
+    "set linetype 2 lc rgb \"#009E73\" dt (12,7) lw 2\n"
+    "set linetype 3 lc rgb \"#0072B2\" dt (3,4) lw 2.2\n"
+    "set linetype 4 lc rgb \"#CC79A7\" dt (12,4,3,4) lw 1.8\n"
+    "set linetype 5 lc rgb \"#E69F00\" dt (12,4,3,4,3,4) lw 1.8\n"
+    "set linetype 6 lc rgb \"#56B4E9\" dt (6,3) lw 1.8\n"
+    "set linetype 7 lc rgb \"#000000\" dt (18,4) lw 1.5\n"
+    "set linetype 8 lc rgb \"#808080\" dt (2,5) lw 2\n"
+    "set linetype 9 lc rgb \"#303030\" dt 1 lw 2.2\n"
+    "set linetype 10 lc rgb \"#606060\" dt (14,9) lw 1\n"
+    "set linetype 11 lc rgb \"#b8b8b8\" dt 1 lw 0.5\n"
+    "heat = 'defined (0 \"#440154\", 1 \"#482878\", 2 \"#3e4a89\", 3 "
+    "\"#31688e\", 4 \"#26828e\", 5 \"#1f9e89\", 6 \"#35b779\", 7 \"#6dcd59\", "
+    "8 \"#b4de2c\", 9 \"#fde725\")'\n"
+    "sigma = 'defined (0 \"#00224e\", 1 \"#123570\", 2 \"#3b496c\", 3 "
+    "\"#575d6d\", 4 \"#707173\", 5 \"#8a8779\", 6 \"#a69d75\", 7 \"#c4b56c\", "
+    "8 \"#e4cf5b\", 9 \"#fee838\")'\n";
 
 void figure_page(struct figure *fig, double width, double body,
-                 const char *spec, const char *below)
+                 const char *title, const char *below)
 {
-    char *title = NULL;
-    size_t size;
-    FILE *out = open_memstream(&title, &size);
-    const int lines = out ? title_wrap(out, spec) : 0;
-    if (out)
-        fclose(out);
+    FILE *out = fig->script;
+    struct title t = title_wrap(title);
     fig->width = width;
-    fig->height = body + (lines + 1) * LINE_HEIGHT + 14;
-    fprintf(fig->script, "reset\n"
-                         "set encoding utf8\n"
-                         "set angles degrees\n"
-                         "table = ");
-    gnuplot_string(fig->script, fig->stem);
-    fputs(" . \".tsv\"\nif (!exists(\"picture\")) picture = ", fig->script);
-    gnuplot_string(fig->script, fig->stem);
-    fprintf(fig->script, " . \"%s\"\nset terminal ", fig->form->extension);
-    const double w = fig->width * fig->form->scale;
-    const double h = fig->height * fig->form->scale;
-    fprintf(fig->script, fig->form->terminal, w, h);
-    fputs("\nset output picture\nset multiplot\n\n", fig->script);
-    figure_label(fig, width / 2, fig->height - LINE_HEIGHT, "center",
-                 title ? title : "");
+    fig->height = body + (t.lines + 1) * LINE_HEIGHT + 14;
+    fputs("reset\n"
+          "set encoding utf8\n"
+          "set angles degrees\n"
+          "table = ",
+          out);
+    gnuplot_string(out, fig->stem);
+    fputs(" . \".tsv\"\nif (!exists(\"picture\")) picture = ", out);
+    gnuplot_string(out, fig->stem);
+    fprintf(out, " . \"%s\"\ndegree = ", fig->form->extension);
+    gnuplot_string(out, fig->form->degree);
+    fputs("\nset terminal ", out);
+    form_terminal(out, fig->form, fig->width, fig->height, scale_of(fig));
+    fputs("\nset output picture\nif (exists(\"window\")) { set output; "
+          "eval(\"set terminal \" . window) }\n",
+          out);
+    fputs(defaults, out);
+    if (fig->style)
+        fprintf(out, "\n# the style\n%s\n# its end\n", fig->style);
+    fputs("set multiplot\n\n", out);
+    for (int i = 0; i < t.lines; i++) {
+        char *line = NULL;
+        if (asprintf(&line, "%.*s%s", (int)t.length[i], t.plain + t.from[i],
+                     t.cut && i + 1 == t.lines ? " …" : "") >= 0)
+            figure_label(fig, width / 2, fig->height - LINE_HEIGHT * (i + 1),
+                         "center", line);
+        free(line);
+    }
     figure_label(fig, width / 2, body + LINE_HEIGHT - 4, "center", below);
-    free(title);
-}
-
-void figure_label(struct figure *fig, double x, double y, const char *aligned,
-                  const char *text)
-{
-    fputs("set label ", fig->script);
-    gnuplot_string(fig->script, text);
-    fprintf(fig->script, " at screen %.6g,%.6g %s noenhanced\n", x / fig->width,
-            y / fig->height, aligned);
-}
-
-void figure_small(struct figure *fig, double x, double y, const char *text)
-{
-    fputs("set label ", fig->script);
-    gnuplot_string(fig->script, text);
-    fprintf(fig->script,
-            " at screen %.6g,%.6g left noenhanced font \",9.5\" tc rgb "
-            "\"#505050\"\n",
-            x / fig->width, y / fig->height);
+    free(t.plain);
 }
 
 void figure_panel(struct figure *fig, double x0, double x1, double y0,
@@ -202,52 +322,41 @@ void figure_panel(struct figure *fig, double x0, double x1, double y0,
             y1 / fig->height);
 }
 
-/* The date of a PDF becomes that of the year 2000, so that the same input gives
- * the same bytes. */
-static bool date_fix(const char *path, struct err *err)
-{
-    static const char key[] = "/CreationDate (D:", date[] = "20000101000000";
-    FILE *f = fopen(path, "r+b");
-    char *bytes = NULL, *at = NULL;
-    long size = -1;
-    if (f && fseek(f, 0, SEEK_END) == 0)
-        size = ftell(f);
-    if (size > 0 && fseek(f, 0, SEEK_SET) == 0)
-        bytes = malloc((size_t)size);
-    bool ok = bytes && fread(bytes, 1, (size_t)size, f) == (size_t)size;
-    if (ok)
-        at = memmem(bytes, (size_t)size, key, strlen(key));
-    if (at) {
-        const long place = at - bytes + (long)strlen(key);
-        ok = place + (long)strlen(date) <= size &&
-             fseek(f, place, SEEK_SET) == 0 && fputs(date, f) >= 0;
-    }
-    if (f)
-        ok = fclose(f) == 0 && ok;
-    free(bytes);
-    return ok ||
-           err_set(err, "%s: cannot be written: %s", path, strerror(errno));
-}
+/* -- drawing --------------------------------------------------------------- */
 
+/* A .tex and its graphic are drawn under another name, as gnuplot takes the
+ * graphic's from that of the other. */
 static bool picture_draw(struct figure *fig, const char *script, char *said,
                          struct err *err)
 {
-    const char *temporary = strrchr(fig->picture.temporary, '/');
-    char *name;
-    if (asprintf(&name, "./%s",
-                 temporary ? temporary + 1 : fig->picture.temporary) < 0)
+    const char *drawn =
+        fig->picture.temporary ? fig->picture.temporary : fig->picture.path;
+    const char *slash = strrchr(drawn, '/');
+    const bool tex = fig->form->tex;
+    char *name, *whole = NULL;
+    if (asprintf(&name, "./%s%s", slash ? slash + 1 : drawn,
+                 tex ? ".tex" : "") < 0)
         return err_set(err, "out of memory");
     bool ok = gnuplot_run(fig->folder, script, name, said, err);
     free(name);
+    if (tex) {
+        /* Where it was drawn, as seen from here. */
+        if (asprintf(&whole, "%s/%s", fig->folder, slash ? slash + 1 : drawn) <
+            0)
+            return err_set(err, "out of memory");
+        ok = form_tex_move(whole, fig->stem, &fig->picture, &fig->graphic,
+                           ok ? err : NULL) &&
+             ok;
+        free(whole);
+        return ok;
+    }
     if (ok && fseek(fig->picture.stream, 0, SEEK_END) == 0 &&
         ftell(fig->picture.stream) == 0)
         ok = err_set(err, "gnuplot has drawn nothing");
-    if (ok && strcmp(fig->form->extension, ".pdf") == 0)
-        ok = date_fix(fig->picture.temporary, err);
-    return ok;
+    return ok && form_finish(fig->form, drawn, err);
 }
 
-/* Closes one of the three and remembers its path. */
+/* Closes one of them and remembers its path. */
 static bool keep(struct outfile *out, struct figure_made *made, struct err *err)
 {
     char *path = strdup(out->path);
@@ -267,18 +376,24 @@ bool figure_draw(struct figure *fig, struct figure_made *made, struct err *err)
 {
     char *script = NULL;
     fputs("\nunset multiplot\nunset output\n", fig->script);
+    fputc('\n', fig->caption);
     *made = (struct figure_made){ 0 };
     if (asprintf(&script, "%s.gp", fig->stem) < 0)
         script = NULL;
     const bool written = (script || err_set(err, "out of memory")) &&
                          keep(&fig->tables, made, err) &&
-                         keep(&fig->scripts, made, err);
-    if (!written && made->paths > 0) { /* a table alone is no use */
-        unlink(made->path[0]);
+                         keep(&fig->scripts, made, err) &&
+                         keep(&fig->captions, made, err);
+    if (!written) { /* a table alone is no use */
+        for (int i = 0; i < made->paths; i++)
+            unlink(made->path[i]);
         figure_made_clear(made);
     }
-    const bool ok = written && picture_draw(fig, script, made->said, err) &&
-                    keep(&fig->picture, made, err);
+    bool ok = written && picture_draw(fig, script, made->said, err) &&
+              (!fig->form->tex || keep(&fig->graphic, made, err)) &&
+              keep(&fig->picture, made, err);
+    if (ok && fig->look.window)
+        ok = gnuplot_window(fig->folder, script, fig->width, fig->height, err);
     free(script);
     figure_abandon(fig);
     return ok;

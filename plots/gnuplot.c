@@ -120,46 +120,105 @@ static char *assignment(const char *picture)
     return NULL;
 }
 
+/* Runs gnuplot to its end; said takes what it had to say. */
+static bool run(const char *folder, char *const argv[],
+                char said[GNUPLOT_SAID_MAX], struct err *err)
+{
+    int words[2] = { -1, -1 }, status = 0;
+    pid_t child = -1;
+    said[0] = '\0';
+    if (pipe2(words, O_CLOEXEC) != 0)
+        return err_set(err, "gnuplot cannot be run: %s", strerror(errno));
+    const int failed = start(&child, folder, argv, words[1]);
+    close(words[1]);
+    if (failed != 0) {
+        close(words[0]);
+        return err_set(err, "gnuplot cannot be run: %s%s", strerror(failed),
+                       failed == ENOENT ? "; is it installed, and on the PATH?"
+                                        : "");
+    }
+    const bool in_time = listen_to(words[0], said);
+    close(words[0]);
+    if (!in_time)
+        kill(child, SIGKILL);
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+        ;
+    if (!in_time)
+        return err_set(err, "gnuplot was stopped after %ld seconds",
+                       patience_ms / 1000);
+    if (WIFSIGNALED(status))
+        return err_set(err, "gnuplot was ended by signal %d", WTERMSIG(status));
+    return (WIFEXITED(status) && WEXITSTATUS(status) == 0) ||
+           err_set(err, "gnuplot failed with exit status %d",
+                   WEXITSTATUS(status));
+}
+
 bool gnuplot_run(const char *folder, const char *script, const char *picture,
                  char said[GNUPLOT_SAID_MAX], struct err *err)
 {
     static char program[] = "gnuplot", plain[] = "-d", command[] = "-e";
     char *file = strdup(script), *set = assignment(picture);
-    int words[2] = { -1, -1 }, status = 0;
-    pid_t child = -1;
-    bool ok = false;
-    said[0] = '\0';
-    if (!file || !set || pipe2(words, O_CLOEXEC) != 0) {
-        err_set(err, "gnuplot cannot be run: %s", strerror(errno));
-        goto done;
-    }
     char *const argv[] = { program, plain, command, set, file, NULL };
-    const int failed = start(&child, folder, argv, words[1]);
-    close(words[1]);
-    words[1] = -1;
-    if (failed != 0) {
-        err_set(err, "gnuplot cannot be run: %s%s", strerror(failed),
-                failed == ENOENT ? "; is it installed, and on the PATH?" : "");
-        goto done;
-    }
-    const bool in_time = listen_to(words[0], said);
-    if (!in_time)
-        kill(child, SIGKILL);
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
-        ;
-    ok = in_time && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    if (!in_time)
-        err_set(err, "gnuplot was stopped after %ld seconds",
-                patience_ms / 1000);
-    else if (!ok && WIFSIGNALED(status))
-        err_set(err, "gnuplot was ended by signal %d", WTERMSIG(status));
-    else if (!ok)
-        err_set(err, "gnuplot failed with exit status %d", WEXITSTATUS(status));
-done:
-    for (int i = 0; i < 2; i++)
-        if (words[i] >= 0)
-            close(words[i]);
+    said[0] = '\0';
+    const bool ok = file && set ? run(folder, argv, said, err)
+                                : err_set(err, "out of memory");
     free(file);
     free(set);
     return ok;
+}
+
+/* -- windows --------------------------------------------------------------- */
+
+/* The first of gnuplot's terminals that opens a window; NULL and what it has
+ * not, or why none can be opened here. */
+static const char *window_terminal(struct err *err)
+{
+    static const char *const windows[] = { "qt", "wxt", "x11", "aqua" };
+    static char program[] = "gnuplot", plain[] = "-d", command[] = "-e";
+    static char ask[] = "print GPVAL_TERMINALS";
+    char *const argv[] = { program, plain, command, ask, NULL };
+    char said[GNUPLOT_SAID_MAX];
+    if (!run(".", argv, said, err))
+        return NULL;
+    for (char *rest = said, *name; (name = strsep(&rest, " \n"));)
+        for (size_t i = 0; i < sizeof windows / sizeof *windows; i++)
+            if (strcmp(name, windows[i]) == 0) {
+                if (getenv("DISPLAY") || getenv("WAYLAND_DISPLAY"))
+                    return windows[i];
+                err_set(err, "--interactive: there is no display to open a "
+                             "window on (neither DISPLAY nor WAYLAND_DISPLAY "
+                             "is set)");
+                return NULL;
+            }
+    err_set(err, "--interactive: the gnuplot that is there opens no windows; "
+                 "expected one with qt, wxt or x11, as Debian's gnuplot-qt");
+    return NULL;
+}
+
+bool gnuplot_window(const char *folder, const char *script, double width,
+                    double height, struct err *err)
+{
+    static char program[] = "gnuplot", plain[] = "-d", stay[] = "-p";
+    static char command[] = "-e";
+    const char *terminal = window_terminal(err);
+    char set[128], *file = terminal ? strdup(script) : NULL;
+    pid_t child = -1;
+    int status = 0;
+    if (!terminal)
+        return false;
+    if (!file)
+        return err_set(err, "out of memory");
+    snprintf(set, sizeof set,
+             "window = '%s size %.0f,%.0f noenhanced font \"sans-serif,9\"'",
+             terminal, width, height);
+    char *const argv[] = { program, plain, stay, command, set, file, NULL };
+    const int failed = start(&child, folder, argv, 2);
+    while (failed == 0 && waitpid(child, &status, 0) < 0 && errno == EINTR)
+        ;
+    free(file);
+    if (failed != 0)
+        return err_set(err, "gnuplot cannot be run: %s", strerror(failed));
+    return (WIFEXITED(status) && WEXITSTATUS(status) == 0) ||
+           err_set(err, "--interactive: gnuplot's terminal %s failed",
+                   terminal);
 }

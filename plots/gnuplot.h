@@ -20,4 +20,10 @@ void gnuplot_string(FILE *script, const char *text);
 bool gnuplot_run(const char *folder, const char *script, const char *picture,
                  char said[GNUPLOT_SAID_MAX], struct err *err);
 
+/** Runs a script in its folder, with its variable `window` set to a terminal
+ * that opens one of so many pixels, which stays until it is closed.  False and
+ * one line where gnuplot has no such terminal, or there is no display. */
+bool gnuplot_window(const char *folder, const char *script, double width,
+                    double height, struct err *err);
+
 #endif

@@ -280,14 +280,6 @@ enum {
     CITED_MAX = 40 /* lines */
 };
 
-/* Of M. Okabe and K. Ito, Color Universal Design, 2008, and a grey. */
-static const char *const hue[PAGES_MAX] = { "#0072B2", "#D55E00", "#009E73",
-                                            "#CC79A7", "#E69F00", "#56B4E9",
-                                            "#000000", "#808080" };
-static const char *const dash[PAGES_MAX] = {
-    "1",     "(12,5)", "(3,3)", "(12,4,3,4)", "(12,4,3,4,3,4)",
-    "(6,3)", "(18,4)", "(2,5)"
-};
 static const int mark[PAGES_MAX] = { 7, 5, 9, 13, 6, 4, 8, 12 };
 
 static struct ior_table measured(const struct curve *c, bool of_k)
@@ -313,11 +305,10 @@ static void key_entries(const struct constants *all, struct key_entry *entry)
         const struct curve *c = &all->curve[i];
         char *plain = utf8_plain(c->name);
         entry[i] = (struct key_entry){ .look = "" };
-        snprintf(entry[i].look, sizeof entry[i].look,
-                 "nohead lc rgb \"%s\" dt %s lw 1.8", hue[i], dash[i]);
+        snprintf(entry[i].look, sizeof entry[i].look, "nohead lt %d", i + 1);
         if (dotted(all, c, false) || dotted(all, c, true))
             snprintf(entry[i].point, sizeof entry[i].point,
-                     "pt %d ps 0.5 lc rgb \"%s\" front", mark[i], hue[i]);
+                     "lt %d pt %d ps 0.5 front", i + 1, mark[i]);
         snprintf(entry[i].text, sizeof entry[i].text, "%.60s, %.6g–%.6g nm%s",
                  plain ? plain : "", c->lo_nm, c->hi_nm,
                  c->has_k ? "" : ", no k");
@@ -439,8 +430,10 @@ static void spread(const double *wanted, int n, double apart, double from,
         at[i] = fmin(at[i], i + 1 < n ? at[i + 1] - apart : to);
 }
 
-static void band_lines(FILE *out, const struct constants *all, bool named)
+static void band_lines(struct figure *fig, const struct constants *all,
+                       bool named)
 {
+    FILE *out = fig->script;
     const double apart = 0.1;
     int order[BANDS_MAX], band[BANDS_MAX], n = 0;
     double x[BANDS_MAX], at[BANDS_MAX];
@@ -462,17 +455,18 @@ static void band_lines(FILE *out, const struct constants *all, bool named)
         bands_print_one(&all->bands, band[order[i]], name, sizeof name);
         fprintf(out,
                 "set arrow from graph %.6g,1 to graph %.6g,1.045 nohead back "
-                "lc rgb \"#909090\" lw 0.8\n"
-                "set label \"%s\" at graph %.6g,1.09 center tc rgb "
-                "\"#505050\"\n",
-                here, at[i], name, at[i]);
+                "lc rgb \"#909090\" lw 0.8\n",
+                here, at[i]);
+        figure_label_at(fig, name, "graph %.6g,1.09 center tc rgb \"#505050\"",
+                        at[i]);
     }
 }
 
 /* Ticks of R, G and B at the right edge. */
-static void three_marks(FILE *out, const struct constants *all, bool of_k,
-                        const struct axis *a)
+static void three_marks(struct figure *fig, const struct constants *all,
+                        bool of_k, const struct axis *a)
 {
+    FILE *out = fig->script;
     int order[3];
     double y[3], at[3];
     char name[8];
@@ -491,15 +485,16 @@ static void three_marks(FILE *out, const struct constants *all, bool of_k,
                 "set arrow from graph 0.985,%.6g to graph 1.012,%.6g nohead "
                 "front lw 1.5\n"
                 "set arrow from graph 1.012,%.6g to graph 1.025,%.6g nohead lw "
-                "0.6\n"
-                "set label \"%s\" at graph 1.03,%.6g left\n",
-                here, here, here, at[i], name, at[i]);
+                "0.6\n",
+                here, here, here, at[i]);
+        figure_label_at(fig, name, "graph 1.03,%.6g left", at[i]);
     }
 }
 
 /* Marks every decade; names every so many. */
-static void decades(FILE *out, const struct axis *a)
+static void decades(struct figure *fig, const struct axis *a)
 {
+    FILE *out = fig->script;
     const int from = (int)lround(log10(a->lo)), to = (int)lround(log10(a->hi));
     char unit[32];
     fprintf(out,
@@ -509,11 +504,9 @@ static void decades(FILE *out, const struct axis *a)
     for (int e = from; e <= to; e++) {
         axis_unit(unit, sizeof unit, e, "");
         unit[strcspn(unit, " ")] = '\0';
-        fprintf(out, "%s\"%s\" 1e%d", e > from ? ", " : "",
-                (to - e) % (int)a->step ? ""
-                : e                     ? unit
-                                        : "1",
-                e);
+        fputs(e > from ? ", " : "", out);
+        figure_text(fig, (to - e) % (int)a->step ? "" : e ? unit : "1");
+        fprintf(out, " 1e%d", e);
     }
     fputs(")\n", out);
 }
@@ -526,22 +519,22 @@ static void panel(struct figure *fig, const struct constants *all, bool of_k,
     int plots_made = 0;
     fprintf(out, "\n# %s\n", of_k ? "k" : "n");
     figure_panel(fig, LEFT, RIGHT, bottom, bottom + PANEL);
-    fprintf(out, "set label \"%s\" at screen %.6g,%.6g center rotate by 90\n",
-            a.title, 24 / fig->width, (bottom + PANEL / 2.) / fig->height);
+    figure_label_at(fig, a.title, "screen %.6g,%.6g center rotate by 90",
+                    24 / fig->width, (bottom + PANEL / 2.) / fig->height);
     if (a.log)
-        decades(out, &a);
+        decades(fig, &a);
     else
         fprintf(out,
                 "unset logscale y; set yrange [%.10g:%.10g]; set ytics %.10g "
-                "nomirror scale 0.7,0.4 format \"%%.10g\"\n",
-                a.lo / a.unit, a.hi / a.unit, a.step / a.unit);
-    fprintf(out, "set format x \"%s\"\n", lowest ? "%.10g" : "");
+                "nomirror scale 0.7,0.4 format \"%s\"\n",
+                a.lo / a.unit, a.hi / a.unit, a.step / a.unit,
+                fig->form->number);
+    fprintf(out, "set format x \"%s\"\n", lowest ? fig->form->number : "");
     if (lowest)
-        fputs("set label \"vacuum wavelength [nm]\" at graph 0.5,-0.22 "
-              "center\n",
-              out);
-    band_lines(out, all, !of_k);
-    three_marks(out, all, of_k, &a);
+        figure_label_at(fig, "vacuum wavelength [nm]",
+                        "graph 0.5,-0.22 center");
+    band_lines(fig, all, !of_k);
+    three_marks(fig, all, of_k, &a);
     fputs("plot ", out);
     for (int i = 0; i < all->curves; i++) {
         const struct curve *c = &all->curve[i];
@@ -549,14 +542,14 @@ static void panel(struct figure *fig, const struct constants *all, bool of_k,
             continue;
         fprintf(out,
                 "%stable index %d using 1:($2 >= 0 ? $2/%.10g : NaN) with "
-                "lines lc rgb \"%s\" dt %s lw 1.8",
+                "lines lt %d",
                 plots_made++ ? ", \\\n     " : "", c->index[of_k], a.unit,
-                hue[i], dash[i]);
+                i + 1);
         if (dotted(all, c, of_k))
             fprintf(out,
                     ", \\\n     table index %d using 1:($2 >= 0 ? $2/%.10g : "
-                    "NaN) with points pt %d ps 0.5 lc rgb \"%s\"",
-                    c->index[of_k], a.unit, mark[i], hue[i]);
+                    "NaN) with points lt %d pt %d ps 0.5",
+                    c->index[of_k], a.unit, i + 1, mark[i]);
     }
     fputs("\nunset arrow; unset label\n", out);
 }
@@ -644,13 +637,16 @@ static bool run(const struct plot_request *r, struct figure_made *made,
     bool ok = pages_find(&all, r->pages, err) && range_choose(&all, r, err);
     if (ok) {
         three_fit(&all, &warning);
-        ok = figure_open(&fig, r->output, err);
+        ok = figure_open(&fig, r->output, &r->look, err);
     }
     if (ok && !table_write(fig.table, &all, err)) {
         figure_abandon(&fig);
         ok = false;
     } else if (ok) {
         script_write(&fig, &all);
+        plot_caption(&fig, &plot_ior, r, r->pages,
+                     "Index of refraction n and extinction coefficient k [1] "
+                     "against vacuum wavelength [nm]: ");
         ok = figure_draw(&fig, made, err);
     }
     if (ok && warning.text[0])

@@ -2,10 +2,10 @@
 #include "plots/key.h"
 
 const char key_wo[] =
-    "head filled size screen 0.011,20 lc rgb \"#000000\" lw 1.5";
-const char key_mirror[] = "nohead lc rgb \"#a8a8a8\" lw 6";
+    "head filled size screen 0.011,20 lc rgb \"#000000\" dt 1 lw 1.5";
+const char key_mirror[] = "nohead lc rgb \"#a8a8a8\" dt 1 lw 6";
 const char key_delta[] =
-    "head filled size screen 0.014,18 lc rgb \"#000000\" lw 2.5";
+    "head filled size screen 0.014,18 lc rgb \"#000000\" dt 1 lw 2.5";
 
 /* In pixels. */
 enum { SAMPLE = 30, GAP = 7, APART = 24, MARGIN = 12 };

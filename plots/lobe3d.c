@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "plots/axis.h"
+#include "plots/colours.h"
 #include "plots/key.h"
 #include "plots/pilots.h"
 #include "plots/table.h"
@@ -54,18 +55,6 @@ struct surface {
 
 /* -- radii ----------------------------------------------------------------- */
 
-/* Of linear sRGB: the second row of the matrix of IEC 61966-2-1. */
-static const double luminance[BANDS_MAX] = { 0.2126, 0.7152, 0.0722 };
-
-static double mean(const struct bands *bands, struct spectrum f)
-{
-    double sum = 0;
-    for (int b = 0; b < bands->count; b++)
-        sum += f.band[b] *
-               (bands->kind == BANDS_NM ? 1. / bands->count : luminance[b]);
-    return sum;
-}
-
 /* A direction from theta and from phi about the mirror direction. */
 static struct vec3 direction(const struct surface *s, double theta_deg,
                              double phi_deg)
@@ -87,7 +76,7 @@ static struct spectrum value(const struct surface *s, struct vec3 wi)
 
 static double radius(const struct surface *s, struct vec3 wi)
 {
-    return fmax(mean(bsdf_bands(s->bsdf), value(s, wi)), 0);
+    return fmax(colours_mean(bsdf_bands(s->bsdf), value(s, wi)), 0);
 }
 
 static double radius_at(const struct surface *s, double theta_deg,
@@ -504,26 +493,30 @@ static double numbered_spoke(const struct surface *s, const struct scale *c)
 }
 
 /* Names of azimuths, and numbers of rings. */
-static void plane_labels(FILE *out, const struct surface *s,
+static void plane_labels(struct figure *fig, const struct surface *s,
                          const struct scale *c)
 {
     static const char colour[] = "tc rgb \"#505050\"";
     for (int a = 0; a < 360; a += 30) {
         const struct vec3 at = on_plane(1.13, a - s->mirror_phi_deg);
-        if (!covered(s, c, seen(at)))
-            fprintf(out, "set label \"%s%d°\" at %.6g,%.6g,0 center %s\n",
-                    a ? "" : "φ = ", a, at.x, at.y, colour);
+        if (!covered(s, c, seen(at))) {
+            char text[32];
+            snprintf(text, sizeof text, "%s%d°", a ? "" : "φ = ", a);
+            figure_label_at(fig, text, "%.6g,%.6g,0 center %s", at.x, at.y,
+                            colour);
+        }
     }
     if (!(largest(s) > 0))
         return;
     const double spoke = numbered_spoke(s, c);
-    fprintf(out,
-            "do for [i=1:%d] {\n"
-            "    set label sprintf(i < %d ? \"%%g\" : \"%%g [%s]\", i*%.10g) "
-            "at i/%d.*cos(%.10g),i/%d.*sin(%.10g),0 center offset 0,-0.7 %s\n"
-            "}\n",
-            c->steps, c->steps, c->unit_text, c->step / c->unit, c->steps,
-            spoke, c->steps, spoke, colour);
+    for (int i = 1; i <= c->steps; i++) {
+        char text[64];
+        const struct vec3 at = on_plane((double)i / c->steps, spoke);
+        snprintf(text, sizeof text, i < c->steps ? "%g" : "%g [%s]",
+                 i * c->step / c->unit, c->unit_text);
+        figure_label_at(fig, text, "%.6g,%.6g,0 center offset 0,-0.7 %s", at.x,
+                        at.y, colour);
+    }
 }
 
 /* Spokes and rings in the surface; and the normal, with marks at the same
@@ -549,7 +542,7 @@ static void plane(FILE *out, const struct surface *s, const struct scale *c,
             "set samples 121\n"
             "splot for [i=1:%d] [t=0:360] '+' using "
             "(i/%d.*cos($1)):(i/%d.*sin($1)):(0) with lines lc rgb \"#b8b8b8\" "
-            "lw 0.6, \\\n"
+            "dt 1 lw 0.6, \\\n"
             "     [t=%d:180] '+' using (cos($1)):(0):(sin($1)) with lines lc "
             "rgb \"#b8b8b8\" lw 0.8 dt (6,4)\n"
             "unset arrow; unset label\n",
@@ -632,10 +625,7 @@ static struct notes notes_of(const struct surface *s)
         snprintf(n.text[n.lines++], SIZE,
                  "radius and colour: f |cos θᵢ|, %s; the same scale along all "
                  "axes",
-                 bands->kind != BANDS_NM ? "as luminance 0.2126 R + 0.7152 G + "
-                                           "0.0722 B"
-                 : bands->count > 1      ? "mean of the bands"
-                                         : "in the band");
+                 colours_mean_name(bands));
     for (int below = 0; below < 2; below++)
         if (present(&s->side[below])) {
             const struct peak *p = &s->side[below].peak;
@@ -679,9 +669,9 @@ static void colour_bar(struct figure *fig, const struct scale *c, double centre)
     fprintf(fig->script,
             "set colorbox vertical user origin screen %.6g,%.6g size screen "
             "%.6g,%.6g border\n"
-            "set cbtics scale 0.5 %.10g\n",
+            "set cbtics scale 0.5 %.10g format \"%s\"\n",
             BAR / fig->width, from / fig->height, 14 / fig->width,
-            (to - from) / fig->height, c->step / c->unit);
+            (to - from) / fig->height, c->step / c->unit, fig->form->number);
     snprintf(text, sizeof text, "f |cos θᵢ| [%s]", c->unit_text);
     figure_label(fig, BAR + 20, to + 22, "center", text);
 }
@@ -719,16 +709,14 @@ static void script_write(struct figure *fig, const struct surface *s)
             "set xyplane at %g\n"
             "set view %g,%g\n"
             "set view equal xyz\n"
-            "set palette defined (0 \"#440154\", 1 \"#482878\", 2 \"#3e4a89\", "
-            "3 \"#31688e\", 4 \"#26828e\", 5 \"#1f9e89\", 6 \"#35b779\", 7 "
-            "\"#6dcd59\", 8 \"#b4de2c\", 9 \"#fde725\")\n"
+            "set palette @heat\n"
             "set cbrange [0:%.10g]\n",
             lowest, lowest, view_down_deg, view_turn_deg, c.reach / c.unit);
     if (largest(s) > 0)
         colour_bar(fig, &c, centre);
     else
         fputs("unset colorbox\n", out);
-    plane_labels(out, s, &c);
+    plane_labels(fig, s, &c);
     lobe(out, s, &c, true);
     plane(out, s, &c, back);
     lobe(out, s, &c, false);
@@ -739,15 +727,16 @@ static void script_write(struct figure *fig, const struct surface *s)
 static bool surface_init(struct surface *s, const struct plot_request *r,
                          struct err *err)
 {
-    const struct angles wo = dir_to_degrees(r->wo);
-    s->bsdf = r->bsdf;
-    s->wo = r->wo;
-    s->mirror_phi_deg = hypot(r->wo.x, r->wo.y) > 0 ? wo.phi_deg + 180 : 0;
+    const struct angles wo = dir_to_degrees(r->wo[0]);
+    s->bsdf = r->bsdf[0];
+    s->wo = r->wo[0];
+    s->mirror_phi_deg =
+        hypot(r->wo[0].x, r->wo[0].y) > 0 ? wo.phi_deg + 180 : 0;
     if (s->mirror_phi_deg > 180)
         s->mirror_phi_deg -= 360;
     s->side[0] = (struct side){ .from_deg = 0, .to_deg = 90 };
     s->side[1] = (struct side){ .from_deg = 90, .to_deg = 180 };
-    pilots_draw(&s->pilots, r->bsdf, r->wo, r->seed);
+    pilots_draw(&s->pilots, r->bsdf[0], r->wo[0], r->seed);
     for (int below = 0; below < 2; below++)
         peak_find(s, &s->side[below]);
     for (int below = 0; below < 2; below++)
@@ -769,11 +758,14 @@ static bool run(const struct plot_request *r, struct figure_made *made,
     if (!s)
         return err_set(err, "out of memory");
     const bool ready =
-        surface_init(s, r, err) && figure_open(&fig, r->output, err);
+        surface_init(s, r, err) && figure_open(&fig, r->output, &r->look, err);
     bool ok = ready;
     if (ready) {
         table_write(fig.table, s);
         script_write(&fig, s);
+        plot_caption(&fig, &plot_lobe3d, r, NULL,
+                     "f |cos θᵢ| [1/sr] as the radius of a surface, in every "
+                     "direction ωᵢ.");
         ok = figure_draw(&fig, made, err);
     }
     free(s);
@@ -783,5 +775,6 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 const struct plot plot_lobe3d = {
     .name = "lobe3d",
     .about = "f |cos| over all directions, as a surface",
+    .heeds = HEEDS_WO,
     .run = run,
 };

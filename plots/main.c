@@ -2,6 +2,7 @@
 #include <argp.h>
 #include <errno.h>
 #include <gsl/gsl_errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,32 +19,58 @@ enum {
     OPT_SEED,
     OPT_SAMPLES,
     OPT_RANGE,
-    OPT_PROGRAMS
+    OPT_PROGRAMS,
+    OPT_PHI,
+    OPT_LOG,
+    OPT_ZOOM,
+    OPT_WIDTH,
+    OPT_STYLE,
+    OPT_INTERACTIVE
 };
 
 struct request {
     struct plot_request plot;
-    bool has_wo;
-    const char *arg[2]; /* the kind, and a spec or names */
+    const char *arg[1 + PLOT_MODELS_MAX]; /* the kind, and specs or names */
     int args;
 };
 
 const char *argp_program_version = "bsdf-plot " BSDF_VERSION;
 static const char about[] =
     "Draws scattering models, and the optical constants that they are made of."
-    "\vBeside the picture lie its numbers (.tsv) and the script that draws it "
-    "again (.gp, for gnuplot).  A SPEC is name or name:key=value,...; a NAME "
+    "\vBeside the picture lie its numbers (.tsv), the script that draws it "
+    "again "
+    "(.gp, for gnuplot) and a caption (.caption).  A .tex is for \\input in a "
+    "document with the packages graphicx and color; what is no text in it lies "
+    "in a .pdf of the same name.  A style FILE is gnuplot's commands, read "
+    "before anything is drawn, such as `set linetype 1 lc rgb \"black\" dt 2`: "
+    "1 to 8 are the curves, 9 is the only one, 10 a reference, 11 a grid; the "
+    "palettes are the strings heat and sigma.  A SPEC is name or "
+    "name:key=value,...; a NAME "
     "is a material like Ca, a page like Ca/Mathewson, or a file.  `bsdf-info "
     "list` names the models, their keys and the materials.  Exit status: 0, "
     "or 2 if the request was wrong or gnuplot failed.";
 
 static const struct argp_option options[] = {
-    { "wo", OPT_WO, "THETA,PHI", 0, "outgoing direction [deg]", 0 },
-    { "output", 'o', "FILE", 0,
-      "ends in .svg, .pdf or .png, for a report in .html; KIND.svg if not "
-      "given",
+    { "wo", OPT_WO, "THETA,PHI", 0,
+      "outgoing direction [deg]; a lobe takes several", 0 },
+    { "phi", OPT_PHI, "DEG", 0,
+      "azimuth of the cut of a lobe (of wo's mirror direction), of wo for an "
+      "albedo (0), of the normals of an ndf (0); phi_d of a slice (90)",
       0 },
-    { "samples", OPT_SAMPLES, "N", 0, "drawn for a histogram, 1000 to 1e9; 1e6",
+    { "log", OPT_LOG, 0, 0, "values in logarithms", 0 },
+    { "zoom", OPT_ZOOM, "half|disk", 0,
+      "a histogram over half vectors, or over the projected disk", 0 },
+    { "output", 'o', "FILE", 0,
+      "ends in .svg, .pdf, .png or .tex, for a report in .html; KIND.svg if "
+      "not given",
+      0 },
+    { "width", OPT_WIDTH, "MM", 0,
+      "of the picture, 40 to 2000; 211.67, which is 800 pixels of an SVG", 0 },
+    { "style", OPT_STYLE, "FILE.gp", 0, "commands of gnuplot's, see below", 0 },
+    { "interactive", OPT_INTERACTIVE, 0, 0,
+      "show it in a window as well, if gnuplot has one", 0 },
+    { "samples", OPT_SAMPLES, "N", 0,
+      "drawn for a histogram, a convergence or an albedo, 1000 to 1e9; 1e6",
       0 },
     { "seed", OPT_SEED, "S", 0, "of the random numbers; 1", 0 },
     { "nm", OPT_NM, "A,B,C", 0, "the bands: one to four wavelengths", 0 },
@@ -79,6 +106,36 @@ static bool range_read(struct plot_request *r, const char *text,
     return true;
 }
 
+/* The bits of the options that not every kind heeds. */
+static const struct {
+    const char *name;
+    unsigned bit;
+} heeded[] = { { "--wo", HEEDS_WO },
+               { "--phi", HEEDS_PHI },
+               { "--log", HEEDS_LOG },
+               { "--zoom", HEEDS_ZOOM } };
+enum { HEEDED = sizeof heeded / sizeof *heeded };
+
+static bool direction_add(struct plot_request *r, const char *text,
+                          struct err *err)
+{
+    if (r->wos == PLOT_DIRECTIONS_MAX)
+        return err_set(err, "--wo \"%.80s\": expected at most %d of them", text,
+                       PLOT_DIRECTIONS_MAX);
+    return cli_direction(&r->wo[r->wos++], text, err);
+}
+
+static bool zoom_read(enum plot_zoom *zoom, const char *text, struct err *err)
+{
+    static const char *const names[] = { "half", "disk", NULL };
+    for (int i = 0; names[i]; i++)
+        if (strcmp(text, names[i]) == 0) {
+            *zoom = i == 0 ? ZOOM_HALF : ZOOM_DISK;
+            return true;
+        }
+    return err_unknown(err, "--zoom", text, names);
+}
+
 static error_t option(int key, char *arg, struct argp_state *state)
 {
     struct request *r = state->input;
@@ -101,7 +158,25 @@ static error_t option(int key, char *arg, struct argp_state *state)
         ok = cli_ior_path(arg, &err);
         break;
     case OPT_WO:
-        ok = r->has_wo = cli_direction(&r->plot.wo, arg, &err);
+        ok = direction_add(&r->plot, arg, &err);
+        break;
+    case OPT_PHI:
+        ok = cli_number(&r->plot.phi_deg, "--phi", arg, -360, 360, &err);
+        break;
+    case OPT_LOG:
+        r->plot.log = true;
+        break;
+    case OPT_ZOOM:
+        ok = zoom_read(&r->plot.zoom, arg, &err);
+        break;
+    case OPT_WIDTH:
+        ok = cli_number(&r->plot.look.width_mm, "--width", arg, 40, 2000, &err);
+        break;
+    case OPT_STYLE:
+        r->plot.look.style = arg;
+        break;
+    case OPT_INTERACTIVE:
+        r->plot.look.window = true;
         break;
     case OPT_SAMPLES:
         ok = cli_count(&r->plot.samples, "--samples", arg, 1000, 1000000000,
@@ -114,7 +189,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
         r->plot.output = arg;
         break;
     case ARGP_KEY_ARG:
-        if (r->args == 2)
+        if (r->args == 1 + PLOT_MODELS_MAX)
             ok = err_set(&err, "\"%.200s\" is one argument too many", arg);
         else
             r->arg[r->args++] = arg;
@@ -140,7 +215,7 @@ static char *help(int key, const char *text, void *input)
         return (char *)text;
     fputs("Kinds:\n", out);
     for (int i = 0; plots[i]; i++)
-        fprintf(out, "  %-10s %s\n", plots[i]->name, plots[i]->about);
+        fprintf(out, "  %-12s %s\n", plots[i]->name, plots[i]->about);
     fprintf(out, "\n%s", text);
     fclose(out);
     return all;
@@ -149,9 +224,9 @@ static char *help(int key, const char *text, void *input)
 /* NULL and the reason if there is no such kind. */
 static const struct plot *kind(const char *name, struct err *err)
 {
-    const char *names[16] = { NULL };
+    const char *names[32] = { NULL };
     char list[256] = "";
-    for (int i = 0; plots[i] && i < 15; i++) {
+    for (int i = 0; plots[i] && i < 31; i++) {
         if (strcmp(plots[i]->name, name) == 0)
             return plots[i];
         names[i] = plots[i]->name;
@@ -190,24 +265,71 @@ static bool answered(const struct bsdf *b, struct err *err)
     return good;
 }
 
-/* Makes the model, if the plot is of one, and draws. */
+/* Makes the models, if the plot is of some, and draws. */
 static bool draw_of(const struct plot *plot, struct request *r,
                     struct figure_made *made, struct err *err)
 {
+    struct plot_request *p = &r->plot;
     if (plot->subject != PLOT_MODEL) {
-        *(plot->subject == PLOT_RUN ? &r->plot.file : &r->plot.pages) =
-            r->arg[1];
-        return plot->run(&r->plot, made, err);
+        *(plot->subject == PLOT_FILE ? &p->file : &p->pages) = r->arg[1];
+        return plot->run(p, made, err);
     }
-    struct bsdf *b = foreign_new(r->arg[1], &r->plot.bands, err);
-    if (!b)
-        return false;
-    warn(err);
-    err->text[0] = '\0';
-    r->plot.bsdf = b;
-    const bool ok = plot->run(&r->plot, made, err) && answered(b, err);
-    bsdf_free(b);
+    struct bsdf *b[PLOT_MODELS_MAX] = { NULL };
+    bool ok = true;
+    for (int i = 1; ok && i < r->args; i++) {
+        b[p->bsdfs] = foreign_new(r->arg[i], &p->bands, err);
+        ok = b[p->bsdfs];
+        if (ok) {
+            warn(err);
+            err->text[0] = '\0';
+            p->bsdf[p->bsdfs] = b[p->bsdfs];
+            p->bsdfs++;
+        }
+    }
+    ok = ok && plot->run(p, made, err);
+    for (int i = 0; i < p->bsdfs; i++) {
+        ok = ok && answered(b[i], err);
+        bsdf_free(b[i]);
+    }
     return ok;
+}
+
+/* Whether a kind heeds what was asked of it. */
+static bool fits(const struct plot *plot, const struct request *r,
+                 struct err *err)
+{
+    const struct plot_request *p = &r->plot;
+    const unsigned given = (p->wos > 0) * HEEDS_WO |
+                           !isnan(p->phi_deg) * HEEDS_PHI | p->log * HEEDS_LOG |
+                           (p->zoom != ZOOM_NONE) * HEEDS_ZOOM;
+    const int most = plot->models ? plot->models : 1;
+    const int least = plot->models_least ? plot->models_least : 1;
+    const int directions = plot->directions ? plot->directions : 1;
+    if (r->args - 1 < least)
+        return err_set(
+            err, "%s: expected %s%s", plot->name,
+            plot->subject == PLOT_MODEL  ? least > 1 ? "two SPECs" : "a SPEC"
+            : plot->subject == PLOT_FILE ? "a FILE of "
+                                         : "a NAME, or several: NAME,NAME",
+            plot->subject == PLOT_FILE ? plot->file : "");
+    if (r->args - 1 > most)
+        return err_set(err, "\"%.200s\" is one argument too many",
+                       r->arg[1 + most]);
+    for (int i = 0; i < HEEDED; i++) {
+        if (!(given & ~plot->heeds & heeded[i].bit))
+            continue;
+        char list[256] = "";
+        for (int k = 0; plots[k]; k++)
+            if (plots[k]->heeds & heeded[i].bit)
+                snprintf(list + strlen(list), sizeof list - strlen(list),
+                         "%s%s", list[0] ? ", " : "", plots[k]->name);
+        return err_set(err, "%s: it has no use for %s, which is for %s",
+                       plot->name, heeded[i].name, list);
+    }
+    if (p->wos > directions)
+        return err_set(err, "%s: expected one --wo", plot->name);
+    return p->wos > 0 || !(plot->heeds & HEEDS_WO) || plot->any_wo ||
+           err_set(err, "%s: expected --wo THETA,PHI in degrees", plot->name);
 }
 
 static bool draw(struct request *r, struct figure_made *made, struct err *err)
@@ -217,19 +339,8 @@ static bool draw(struct request *r, struct figure_made *made, struct err *err)
     if (r->args == 0)
         return err_set(err, "expected a kind of plot and a SPEC, as in lobe "
                             "roughconductor:material=Ca --wo 45,0");
-    if (!plot)
+    if (!plot || !fits(plot, r, err))
         return false;
-    const bool model = plot->subject == PLOT_MODEL;
-    if (r->args == 1)
-        return err_set(err, "%s: expected %s", plot->name,
-                       model                       ? "a SPEC"
-                       : plot->subject == PLOT_RUN ? "a FILE of bsdf-validate "
-                                                     "--json"
-                                                   : "a NAME, or several: "
-                                                     "NAME,NAME");
-    if (model && !r->has_wo)
-        return err_set(err, "%s: expected --wo THETA,PHI in degrees",
-                       plot->name);
     snprintf(name, sizeof name, "%s%s", plot->name,
              plot->extension ? plot->extension : ".svg");
     if (!r->plot.output)
@@ -239,15 +350,16 @@ static bool draw(struct request *r, struct figure_made *made, struct err *err)
 
 int main(int argc, char **argv)
 {
-    struct request r = {
-        .plot = { .bands = bands_default, .seed = 1, .samples = 1000000 }
-    };
+    struct request r = { .plot = { .bands = bands_default,
+                                   .phi_deg = NAN,
+                                   .seed = 1,
+                                   .samples = 1000000 } };
     struct figure_made made = { .paths = 0 };
     struct err err = { "" };
     gsl_set_error_handler_off();
     argp_err_exit_status = EXIT_REQUEST;
     argp_parse(&(struct argp){ options, option,
-                               "KIND SPEC\nKIND NAME[,NAME...]\nreport FILE",
+                               "KIND SPEC...\nKIND NAME[,NAME...]\nKIND FILE",
                                about, 0, help, 0 },
                argc, argv, 0, NULL, &r);
     bool ok = draw(&r, &made, &err);

@@ -451,9 +451,12 @@ static void pictures_of(struct page *p, const struct recorded_result *one)
     p->drawn_models++;
     const uint64_t n = p->r->plan.samples;
     struct plot_request r = {
-        .bsdf = b,
+        .bsdf = { b },
+        .bsdfs = 1,
         .bands = p->r->bands,
-        .wo = one->wo,
+        .wo = { one->wo },
+        .wos = 1,
+        .phi_deg = NAN,
         .seed = p->r->plan.seed,
         .samples = n < picture_samples ? n : picture_samples,
         .output = path,
@@ -835,7 +838,8 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 const struct plot plot_report = {
     .name = "report",
     .about = "a report of bsdf-validate --json as one page of HTML",
-    .subject = PLOT_RUN,
+    .subject = PLOT_FILE,
+    .file = "bsdf-validate --json",
     .extension = ".html",
     .run = run,
 };

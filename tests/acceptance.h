@@ -12,7 +12,19 @@
 
 #include "validate/run.h"
 
+enum acceptance_part {
+    ACCEPTANCE_SOUND,
+    ACCEPTANCE_MASSES,
+    ACCEPTANCE_MISTAKES,
+    ACCEPTANCE_THREADS,
+    ACCEPTANCE_PARTS
+};
+
+/** "sound", "masses", "mistakes", "threads" */
+extern const char *const acceptance_parts[ACCEPTANCE_PARTS];
+
 struct acceptance {
+    unsigned parts;                /* 1 << part, of those that are tried */
     FILE *out;                     /* tables, in Markdown */
     uint64_t seed;                 /* of the first run */
     uint64_t samples;              /* for mistakes */

@@ -26,6 +26,8 @@
 #include "bsdf/outfile.h"
 #include "tests/baseline.h"
 #include "tests/mutant_table.h"
+#include "tests/plan_argp.h"
+#include "tests/publish.h"
 
 enum { OTHERS = 4, OURS = OTHERS, WHO, DIRECTIONS = 20, MANY = 128 };
 
@@ -48,26 +50,19 @@ struct request {
 };
 
 static const struct argp_option options[] = {
-    { "seed", 's', "S", 0, "of the random numbers; 1", 0 },
-    { "samples", 'n', "N", 0, "for each direction; 1e6", 0 },
     { "output", 'f', "FILE", 0, "build/baselines/verdicts.tsv", 0 },
-    { "readme", 'r', "FILE", 0, "the file with the two comments; none", 0 },
+    { "readme", 'r', "FILE", 0, "the file with <!-- baselines --> in it; none",
+      0 },
     { 0 },
 };
 
 static error_t option(int key, char *arg, struct argp_state *state)
 {
     struct request *r = state->input;
-    struct err err;
-    bool ok = true;
     switch (key) {
-    case 's':
-        ok = cli_count(&r->plan.seed, "--seed", arg, 0, INT64_MAX, &err);
-        break;
-    case 'n':
-        ok = cli_count(&r->plan.samples, "--samples", arg, 1000, 100000000,
-                       &err);
-        break;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &r->plan;
+        return 0;
     case 'f':
         r->table = arg;
         break;
@@ -77,8 +72,6 @@ static error_t option(int key, char *arg, struct argp_state *state)
     default:
         return ARGP_ERR_UNKNOWN;
     }
-    if (!ok)
-        argp_failure(state, EXIT_REQUEST, 0, "%s", err.text);
     return 0;
 }
 
@@ -266,31 +259,16 @@ static int cases_rejected(const struct cases *c, int who, bool mistakes,
 
 /* -- the report ------------------------------------------------------------ */
 
-static void machine(char *text, size_t size)
-{
-    char line[256], model[160] = "an unknown processor", date[20] = "";
-    FILE *f = fopen("/proc/cpuinfo", "r");
-    while (f && fgets(line, sizeof line, f))
-        if (sscanf(line, "model name : %159[^\n]", model) == 1)
-            break;
-    if (f)
-        fclose(f);
-    const time_t now = time(NULL);
-    strftime(date, sizeof date, "%Y-%m-%d", localtime(&now));
-    snprintf(text, size, "%s, %s", date, model);
-}
-
 /* Markdown, which reads well on a terminal too. */
 static void summary(FILE *f, const struct request *r, const struct mirrors *m,
                     const struct cases *c)
 {
-    char where[256];
+    const struct machine where = machine_now();
     int of;
-    machine(where, sizeof where);
     fprintf(f,
-            "Written by `make baselines`: %s, seed %llu, %llu samples a "
+            "Written by `make baselines`: %s, %s, seed %llu, %llu samples a "
             "direction.\n\n",
-            where, (unsigned long long)r->plan.seed,
+            where.date, where.processor, (unsigned long long)r->plan.seed,
             (unsigned long long)r->plan.samples);
     fprintf(f,
             "Sound rough mirrors (Beckmann, GGX; visible normals) rejected, "
@@ -342,10 +320,9 @@ static void print_cases(const struct cases *c)
 static void write_verdicts(FILE *f, const struct request *r,
                            const struct mirrors *m, const struct cases *c)
 {
-    char where[256];
-    machine(where, sizeof where);
-    fprintf(f, "# %s, seed %llu, %llu samples a direction\n", where,
-            (unsigned long long)r->plan.seed,
+    const struct machine where = machine_now();
+    fprintf(f, "# %s, %s, seed %llu, %llu samples a direction\n", where.date,
+            where.processor, (unsigned long long)r->plan.seed,
             (unsigned long long)r->plan.samples);
     for (int who = 0; who < OTHERS; who++)
         fprintf(f, "# %s: %s\n", others[who]->name, others[who]->about);
@@ -387,50 +364,17 @@ static void write_verdicts(FILE *f, const struct request *r,
 
 /* -- the README ------------------------------------------------------------ */
 
-static const char start_mark[] =
-    "<!-- baselines: written by make baselines -->";
-static const char end_mark[] = "<!-- baselines end -->";
-
-static char *whole_file(const char *path, struct err *err)
-{
-    FILE *f = fopen(path, "r");
-    const long size = f && fseek(f, 0, SEEK_END) == 0 ? ftell(f) : -1;
-    char *text = size >= 0 ? calloc((size_t)size + 1, 1) : NULL;
-    if (text) {
-        rewind(f);
-        if (fread(text, 1, (size_t)size, f) != (size_t)size) {
-            free(text);
-            text = NULL;
-        }
-    }
-    if (!text)
-        err_set(err, "%s: cannot be read: %s", path, strerror(errno));
-    if (f)
-        fclose(f);
-    return text;
-}
-
-/* Puts the summary between the marks. */
 static bool write_readme(const struct request *r, const struct mirrors *m,
                          const struct cases *c, struct err *err)
 {
-    struct outfile out;
-    char *text = whole_file(r->readme, err);
-    if (!text)
-        return false;
-    const char *start = strstr(text, start_mark);
-    const char *end = start ? strstr(start, end_mark) : NULL;
-    bool ok = end ? outfile_open(&out, r->readme, err)
-                  : err_set(err, "%s: expected \"%s\" and, behind it, \"%s\"",
-                            r->readme, start_mark, end_mark);
-    if (ok) {
-        fwrite(text, 1, (size_t)(start - text) + strlen(start_mark),
-               out.stream);
-        fprintf(out.stream, "\n");
-        summary(out.stream, r, m, c);
-        fputs(end, out.stream);
-        ok = outfile_close(&out, err);
-    }
+    char *text = NULL;
+    size_t size;
+    FILE *f = open_memstream(&text, &size);
+    if (f)
+        summary(f, r, m, c);
+    const bool ok = f && fclose(f) == 0
+                        ? publish(r->readme, "baselines", text, err)
+                        : err_set(err, "out of memory");
     free(text);
     return ok;
 }
@@ -452,12 +396,15 @@ int main(int argc, char **argv)
     int wolf = 0;
     gsl_set_error_handler_off();
     argp_err_exit_status = EXIT_REQUEST;
-    argp_parse(&(struct argp){ options, option, NULL,
-                               "Who catches what, and who cries wolf.", 0, 0,
-                               0 },
-               argc, argv, 0, NULL, &r);
+    argp_parse(
+        &(struct argp){
+            options, option, NULL, "Who catches what, and who cries wolf.",
+            (const struct argp_child[]){ { &plan_argp, 0, 0, 0 }, { 0 } }, 0,
+            0 },
+        argc, argv, 0, NULL, &r);
     const time_t start = time(NULL);
     r.plan.threads = 1;
+    r.plan.unexplained = true;
     mirrors_try(&mirrors, &r.plan);
     cases_gather(&cases);
     cases_try(&cases, &r.plan);

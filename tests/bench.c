@@ -13,14 +13,15 @@
  * The baseline of a chi-square on 51 x 102 bins is tests/baseline_simpson.c.
  */
 #include <gsl/gsl_integration.h>
+#include <gsl/gsl_sort.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "bsdf/fastmath.h"
 #include "bsdf/lanes.h"
 #include "tests/baseline_simpson.h"
+#include "tests/publish.h"
 #include "validate/checks.h"
 
 enum {
@@ -62,15 +63,9 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *time, size_t n)
 {
-    qsort(time, n, sizeof *time, by_size);
+    gsl_sort(time, 1, n);
     return time[n / 2];
 }
 
@@ -408,7 +403,8 @@ static struct method ours(const struct partition *p, struct lobe l,
     struct method m = { 0 };
     const double start = seconds();
     l.evaluations = &m.evaluations;
-    partition_integrate(p, pdf_at, &l, 1, mass_tolerance, mass_budget, mass);
+    partition_integrate(p, pdf_at, &l, 1, mass_tolerance, 2 * BATCH,
+                        mass_budget, mass);
     m.ms = (seconds() - start) * 1e3;
     return m;
 }
@@ -497,20 +493,73 @@ static struct grid_test grid_usual(int kind, double theta)
     return t;
 }
 
-/* The cell of each direction, CELLS where there is none. */
-LANES static void cells(const double *x, const double *y, const double *z,
-                        const double *pdf, int *cell)
+/* A direction is found by 1 - cos(theta) and by the way round a square instead
+ * of a circle, which grow with the angles: a slot of a table holds one edge at
+ * most. */
+enum { SLOTS = 2048 };
+struct finder {
+    unsigned char strip[SLOTS + 1],
+        slice[SLOTS + 1]; /* where the slot begins */
+    double strip_end[STRIPS + 1], slice_end[SLICES + 1];
+};
+
+INLINE double square(double x, double y)
+{
+    const double s = y / (fabs(x) + fabs(y) + 0x1p-1022);
+    const double right = s < 0 ? 4 + s : s;
+    return x < 0 ? 2 - s : right;
+}
+
+static void slots_fill(unsigned char *slot, double span, const double *end,
+                       int last)
+{
+    for (int i = 0, at = 0; i <= SLOTS; i++) {
+        while (at < last && end[at] <= i * span / SLOTS)
+            at++;
+        slot[i] = (unsigned char)at;
+    }
+}
+
+static void finder_make(struct finder *f)
+{
+    for (int i = 0; i < STRIPS; i++)
+        f->strip_end[i] = 1 - cos((i + 1) * PI / STRIPS);
+    for (int i = 0; i < SLICES; i++) {
+        const double phi = (i + 1) * 2 * PI / SLICES;
+        f->slice_end[i] = square(cos(phi), sin(phi));
+    }
+    f->strip_end[STRIPS - 1] = f->slice_end[SLICES - 1] = INFINITY;
+    slots_fill(f->strip, 2, f->strip_end, STRIPS - 1);
+    slots_fill(f->slice, 4, f->slice_end, SLICES - 1);
+}
+
+/* What a batch is found by. */
+struct sought {
+    double down[BATCH], round[BATCH];
+    int strip[BATCH], slice[BATCH]; /* slots */
+};
+
+LANES static void keys_of(const double *x, const double *y, const double *z,
+                          struct sought *k)
 {
     LANES_LOOP
     for (int i = 0; i < BATCH; i++) {
-        const double r = sqrt(x[i] * x[i] + y[i] * y[i]);
-        const double theta = fm_atan2(r, z[i]), phi = fm_atan2(y[i], x[i]);
-        const double strip = theta * (STRIPS / PI);
-        const double slice =
-            (phi < 0 ? phi + 2 * PI : phi) * (SLICES / (2 * PI));
-        const int row = (int)fm_min(strip, STRIPS - 1);
-        const int column = (int)fm_min(slice, SLICES - 1);
-        cell[i] = pdf[i] > 0 ? row * SLICES + column : CELLS;
+        k->down[i] = 1 - z[i];
+        k->round[i] = square(x[i], y[i]);
+        k->strip[i] = (int)(k->down[i] * (SLOTS / 2));
+        k->slice[i] = (int)(k->round[i] * (SLOTS / 4));
+    }
+}
+
+/* Counts n directions by cells, those without a pdf in a last one. */
+static void count(const struct finder *f, const struct sought *k,
+                  const double *pdf, size_t n, long *counts)
+{
+    for (size_t i = 0; i < n; i++) {
+        const int strip = f->strip[k->strip[i]], slice = f->slice[k->slice[i]];
+        const int row = strip + (k->down[i] >= f->strip_end[strip]);
+        const int column = slice + (k->round[i] >= f->slice_end[slice]);
+        counts[pdf[i] > 0 ? row * SLICES + column : CELLS]++;
     }
 }
 
@@ -528,9 +577,11 @@ static double grid_sample(const struct bsdf *b, struct vec3 wo, bool weights,
 {
     static double u[3][BATCH], o[3][BATCH];
     static struct drawn d;
+    static struct finder find;
     const struct bsdf_samples s = into(&d, weights ? bands.count : 0);
-    int cell[BATCH];
+    struct sought sought;
     double sum = 0;
+    finder_make(&find);
     for (int i = 0; i < BATCH; i++)
         o[0][i] = wo.x, o[1][i] = wo.y, o[2][i] = wo.z;
     for (uint64_t at = 0; at < GRID_SAMPLES; at += BATCH) {
@@ -541,9 +592,8 @@ static double grid_sample(const struct bsdf *b, struct vec3 wo, bool weights,
                          (struct dirs){ u[0], u[1], u[2] }, s);
         for (int k = 0; k < BANDS_MAX && s.weight[k]; k++)
             sum += total(n, s.weight[k]);
-        cells(s.x, s.y, s.z, s.pdf, cell);
-        for (size_t i = 0; i < n; i++)
-            counts[cell[i]]++;
+        keys_of(s.x, s.y, s.z, &sought);
+        count(&find, &sought, s.pdf, n, counts);
     }
     return sum / ((double)bands.count * GRID_SAMPLES);
 }
@@ -677,21 +727,14 @@ struct results {
 
 static void print_machine(void)
 {
-    char line[256], model[200] = "unknown", date[20] = "";
-    FILE *f = fopen("/proc/cpuinfo", "r");
-    while (f && fgets(line, sizeof line, f))
-        if (sscanf(line, "model name : %199[^\n]", model) == 1)
-            break;
-    if (f)
-        fclose(f);
-    const time_t now = time(NULL);
-    strftime(date, sizeof date, "%Y-%m-%d", localtime(&now));
+    const struct machine m = machine_now();
 #ifdef __clang__
     const char *compiler = __VERSION__;
 #else
     const char *compiler = "gcc " __VERSION__;
 #endif
-    printf("machine   %s\ncompiler  %s\ndate      %s\n", model, compiler, date);
+    printf("machine   %s\ncompiler  %s\ndate      %s\n", m.processor, compiler,
+           m.date);
     printf("method    one thread, its own time; medians; three bands; %d "
            "directions, wo "
            "uniform over the upper\n          hemisphere and wi drawn by the "

@@ -13,12 +13,13 @@
 #include <gsl/gsl_errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "bsdf/cli.h"
+#include "bsdf/outfile.h"
 #include "tests/acceptance.h"
 #include "tests/calibration.h"
+#include "tests/plan_argp.h"
 #include "tests/publish.h"
 #include "tests/uniformity.h"
 
@@ -27,24 +28,47 @@
  * uniform. */
 static const double false_alarm = 1e-3;
 
-enum { OPT_SEED = 1, OPT_ROUNDS, OPT_SAMPLES, OPT_PUBLISH, OPT_POWER };
+enum {
+    OPT_SEED = 1,
+    OPT_ROUNDS,
+    OPT_SAMPLES,
+    OPT_PUBLISH,
+    OPT_POWER,
+    OPT_P_VALUES,
+    OPT_ONLY
+};
 
 struct request {
-    uint64_t seed, rounds, samples;
-    const char *publish;
+    struct plan plan; /* seed: of the first round; samples: of a case */
+    uint64_t rounds;
+    const char *publish, *p_values;
     bool power;
+    unsigned parts; /* of the power; 0 for all */
 };
 
 static const struct argp_option options[] = {
-    { "seed", OPT_SEED, "S", 0, "of the first round; 1", 0 },
     { "rounds", OPT_ROUNDS, "N", 0, "runs a model, each at its own seed; 64",
       0 },
-    { "samples", OPT_SAMPLES, "N", 0, "of a case; 50000", 0 },
     { "publish", OPT_PUBLISH, "FILE", 0,
       "put the tables between the marker lines of a file", 0 },
+    { "p-values", OPT_P_VALUES, "FILE", 0,
+      "write those that can be uniform, for bsdf-plot p-values", 0 },
     { "power", OPT_POWER, 0, 0, "what mistakes are caught, instead", 0 },
+    { "only", OPT_ONLY, "PART", 0,
+      "of the power: sound, masses, mistakes or threads; may be repeated", 0 },
     { 0 },
 };
+
+static bool part_of(unsigned *parts, const char *name, struct err *err)
+{
+    for (int i = 0; i < ACCEPTANCE_PARTS; i++)
+        if (strcmp(name, acceptance_parts[i]) == 0) {
+            *parts |= 1U << i;
+            return true;
+        }
+    return err_set(
+        err, "--only %s: expected sound, masses, mistakes or threads", name);
+}
 
 static error_t option(int key, char *arg, struct argp_state *state)
 {
@@ -52,20 +76,28 @@ static error_t option(int key, char *arg, struct argp_state *state)
     struct err err;
     bool ok = true;
     switch (key) {
-    case OPT_SEED:
-        ok = cli_count(&r->seed, "--seed", arg, 0, INT64_MAX / 2, &err);
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &r->plan;
         break;
     case OPT_ROUNDS:
         ok = cli_count(&r->rounds, "--rounds", arg, 1, 100000, &err);
         break;
-    case OPT_SAMPLES:
-        ok = cli_count(&r->samples, "--samples", arg, 1000, 100000000, &err);
-        break;
     case OPT_PUBLISH:
         r->publish = arg;
         break;
+    case OPT_P_VALUES:
+        r->p_values = arg;
+        break;
     case OPT_POWER:
         r->power = true;
+        break;
+    case OPT_ONLY:
+        ok = part_of(&r->parts, arg, &err);
+        break;
+    case ARGP_KEY_END:
+        if (r->parts && (!r->power || r->publish))
+            argp_error(state, "--only goes with --power, and without --publish,"
+                              " as it would leave out the other tables");
         break;
     case ARGP_KEY_ARG:
         argp_usage(state);
@@ -86,17 +118,9 @@ static void progress(void *context, size_t done, size_t of)
 
 static void print_machine(FILE *out, uint64_t seed)
 {
-    char line[256], model[200] = "unknown", date[20] = "";
-    FILE *f = fopen("/proc/cpuinfo", "r");
-    while (f && fgets(line, sizeof line, f))
-        if (sscanf(line, "model name : %199[^\n]", model) == 1)
-            break;
-    if (f)
-        fclose(f);
-    const time_t now = time(NULL);
-    strftime(date, sizeof date, "%Y-%m-%d", localtime(&now));
-    fprintf(out, "%s, seeds from %llu, %s, %.0f minutes.\n", date,
-            (unsigned long long)seed, model, cli_elapsed() / 60);
+    const struct machine m = machine_now();
+    fprintf(out, "%s, seeds from %llu, %s, %.0f minutes.\n", m.date,
+            (unsigned long long)seed, m.processor, cli_elapsed() / 60);
 }
 
 /* -- calibration ----------------------------------------------------------- */
@@ -214,19 +238,38 @@ static bool print_calibration(FILE *out, const struct calibration *c)
     return ok;
 }
 
+/* The values that can be uniform, a line each. */
+static bool write_p_values(const char *path, const struct calibration *c,
+                           struct err *err)
+{
+    struct outfile out;
+    if (!outfile_open(&out, path, err))
+        return false;
+    fprintf(out.stream, "# of sound models; seeds from %llu\nname\tp\tmodel\n",
+            (unsigned long long)c->seed);
+    for (int i = 0; i < c->rows; i++)
+        for (size_t k = 0; k < c->row[i].values; k++)
+            fprintf(out.stream, "%s, %s\t%.17g\t%s\n", c->row[i].check,
+                    c->row[i].part, c->row[i].value[k].uniform,
+                    c->spec[c->row[i].value[k].model]);
+    return outfile_close(&out, err);
+}
+
 static bool calibrate(FILE *out, const struct request *r, bool *ok,
                       struct err *err)
 {
     static struct calibration c;
     c = (struct calibration){ .spec = calibration_specs,
-                              .seed = r->seed,
+                              .seed = r->plan.seed,
                               .rounds = r->rounds,
                               .directions = 10,
-                              .samples = r->samples,
+                              .samples = r->plan.samples,
                               .often = 8 };
-    const bool made = calibration_make(&c, isatty(2) ? progress : NULL, err);
+    bool made = calibration_make(&c, isatty(2) ? progress : NULL, err);
     if (made)
         *ok = print_calibration(out, &c);
+    if (made && r->p_values)
+        made = write_p_values(r->p_values, &c, err);
     calibration_clear(&c);
     return made;
 }
@@ -262,8 +305,9 @@ static void progress_of(const char *what, size_t done, size_t of)
 static bool power(FILE *out, const struct request *r, bool *ok, struct err *err)
 {
     const struct acceptance a = {
+        .parts = r->parts ? r->parts : (1U << ACCEPTANCE_PARTS) - 1,
         .out = out,
-        .seed = r->seed,
+        .seed = r->plan.seed,
         .samples = 1000000,
         .sound_samples = 100000,
         .sound = 20,
@@ -275,22 +319,25 @@ static bool power(FILE *out, const struct request *r, bool *ok, struct err *err)
     };
     const bool made = acceptance(&a, ok, err);
     fprintf(out, "\n");
-    print_machine(out, r->seed);
+    print_machine(out, r->plan.seed);
     return made;
 }
 
 int main(int argc, char **argv)
 {
-    struct request r = { .seed = 1, .rounds = 64, .samples = 50000 };
+    struct request r = { .plan = { .seed = 1, .samples = 50000 },
+                         .rounds = 64 };
     struct err err;
     bool ok = false;
     gsl_set_error_handler_off();
     (void)cli_elapsed();
     argp_err_exit_status = EXIT_REQUEST;
-    argp_parse(&(struct argp){ options, option, NULL,
-                               "Tries how far the verdicts can be trusted.", 0,
-                               0, 0 },
-               argc, argv, 0, NULL, &r);
+    argp_parse(
+        &(struct argp){
+            options, option, NULL, "Tries how far the verdicts can be trusted.",
+            (const struct argp_child[]){ { &plan_argp, 0, 0, 0 }, { 0 } }, 0,
+            0 },
+        argc, argv, 0, NULL, &r);
     report.out = open_memstream(&report.text, &report.size);
     bool made = report.out || err_set(&err, "out of memory");
     made = made && (r.power ? power : calibrate)(report.out, &r, &ok, &err);

@@ -61,6 +61,7 @@ static bool run_one(struct detection *d, const struct bsdf *b, size_t i,
     plan.threads = 1;
     plan.escalations = 0;
     plan.skip = calibration_without_p();
+    plan.unexplained = true;
     if (!run_checks(&run, &plan, &b, 1, &d->wo, 1, NULL, NULL, err))
         return false;
     const long degrees = fine_degrees(&run);

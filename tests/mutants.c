@@ -19,6 +19,7 @@
 #include "bsdf/cli.h"
 #include "bsdf/outfile.h"
 #include "tests/mutant_table.h"
+#include "tests/plan_argp.h"
 
 /* 2^-24 = 6e-8 is below what any check allows for rounding, 1e-7. */
 enum { HALVINGS_MAX = 24, MANY = 128 };
@@ -29,8 +30,6 @@ struct request {
 };
 
 static const struct argp_option options[] = {
-    { "seed", 's', "S", 0, "of the random numbers; 1", 0 },
-    { "samples", 'n', "N", 0, "for each mutant, size and direction; 1e6", 0 },
     { "only", 'o', "NAME", 0, "of all mutants this one", 0 },
     { "output", 'f', "FILE", 0, "build/mutants/kill-matrix.tsv", 0 },
     { 0 },
@@ -39,16 +38,10 @@ static const struct argp_option options[] = {
 static error_t option(int key, char *arg, struct argp_state *state)
 {
     struct request *r = state->input;
-    struct err err;
-    bool ok = true;
     switch (key) {
-    case 's':
-        ok = cli_count(&r->plan.seed, "--seed", arg, 0, INT64_MAX, &err);
-        break;
-    case 'n':
-        ok = cli_count(&r->plan.samples, "--samples", arg, 1000, 1000000000,
-                       &err);
-        break;
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &r->plan;
+        return 0;
     case 'o':
         r->only = arg;
         break;
@@ -58,8 +51,6 @@ static error_t option(int key, char *arg, struct argp_state *state)
     default:
         return ARGP_ERR_UNKNOWN;
     }
-    if (!ok)
-        argp_failure(state, EXIT_REQUEST, 0, "%s", err.text);
     return 0;
 }
 
@@ -317,7 +308,9 @@ int main(int argc, char **argv)
     argp_parse(&(struct argp){ options, option, NULL,
                                "Which check catches which mistake, and how "
                                "small it may be.",
-                               0, 0, 0 },
+                               (const struct argp_child[]){
+                                   { &plan_argp, 0, 0, 0 }, { 0 } },
+                               0, 0 },
                argc, argv, 0, NULL, &r);
     const int n = gather(o, r.only);
     if (n == 0) {

@@ -1,9 +1,10 @@
-/* publish.c - the lines between two markers */
+/* publish.c - the lines between two markers, and what else they say */
 #include "tests/publish.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "bsdf/outfile.h"
 
@@ -56,4 +57,19 @@ bool publish(const char *path, const char *mark, const char *text,
     }
     fclose(in);
     return ok;
+}
+
+struct machine machine_now(void)
+{
+    struct machine m = { .processor = "an unknown processor" };
+    char line[256];
+    const time_t now = time(NULL);
+    FILE *f = fopen("/proc/cpuinfo", "r");
+    while (f && fgets(line, sizeof line, f))
+        if (sscanf(line, "model name : %199[^\n]", m.processor) == 1)
+            break;
+    if (f)
+        fclose(f);
+    strftime(m.date, sizeof m.date, "%Y-%m-%d", localtime(&now));
+    return m;
 }

@@ -1,4 +1,5 @@
-/* publish.h - results, put into a document by the program that found them */
+/* publish.h - results, put into a document by the program that found them, and
+ * where and when that was */
 #ifndef TESTS_PUBLISH_H
 #define TESTS_PUBLISH_H
 
@@ -11,5 +12,11 @@
  * it does not have each of the lines once and in this order. */
 bool publish(const char *path, const char *mark, const char *text,
              struct err *err);
+
+/** Today, as in 2026-11-22, and the processor's name. */
+struct machine {
+    char date[16], processor[200];
+};
+struct machine machine_now(void);
 
 #endif

@@ -4,7 +4,7 @@
  * A survey of a sound model is changed by hand, as a mistake of the model or a
  * bound of the integration would have changed it, and judged again.
  */
-#include <stdlib.h>
+#include <gsl/gsl_sort.h>
 
 #include "tests/close.h"
 #include "validate/checks.h"
@@ -93,12 +93,6 @@ static const struct bsdf_type spy = {
     .sample = spy_sample,
 };
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Bins that were laid through the samples which are then tested in them would
  * make a test of its own making.  Of 53 random bits no two are the same. */
 static void no_number_is_drawn_with_twice(void **state)
@@ -112,7 +106,7 @@ static void no_number_is_drawn_with_twice(void **state)
     assert_true(b &&
                 subject_init(&s, b, dir_from_degrees(40, 70), &plan, &err));
     assert_in_range(seen_count, plan.samples + 1, SEEN_MAX - 1);
-    qsort(seen, seen_count, sizeof *seen, ascending);
+    gsl_sort(seen, 1, seen_count);
     /* But for the tails, which shape no bin: 1 less a tiny number has few bits.
      */
     for (size_t i = 1; i < seen_count; i++)

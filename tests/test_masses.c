@@ -29,6 +29,66 @@ static void degree_nine_is_exact(void **state)
     assert_int_equal(budget, 1000 - 6 * 36);
 }
 
+/* A ridge a thousandth wide along y = 0.3 + 0.37 x, in a square of GRID x GRID
+ * jobs: each line x = const has SIGMA sqrt(pi) / cos of it. */
+enum { GRID = 7 };
+static const double sigma = 1e-3, slope = 0.37;
+
+static void ridge(const void *context, size_t n,
+                  const double (*x)[QUADRATURE_ORDER],
+                  const double (*y)[QUADRATURE_ORDER], double *value)
+{
+    (void)context;
+    for (size_t rule = 0; rule < n; rule++)
+        for (int i = 0; i < QUADRATURE_ORDER; i++)
+            for (int k = 0; k < QUADRATURE_ORDER; k++) {
+                const double off = (y[rule][k] - 0.3 - slope * x[rule][i]) /
+                                   sqrt(1 + slope * slope) / sigma;
+                *value++ = exp(-off * off);
+            }
+}
+
+static size_t beside(const void *mesh, size_t job, enum quadrature_side side,
+                     double *x, double *y)
+{
+    static const int step[][2] = { { -1, 0 }, { 1, 0 }, { 0, -1 }, { 0, 1 } };
+    const int row = (int)job / GRID + step[side][0];
+    const int column = (int)job % GRID + step[side][1];
+    (void)mesh, (void)x, (void)y;
+    return row < 0 || row == GRID || column < 0 || column == GRID
+               ? QUADRATURE_NONE
+               : (size_t)(row * GRID + column);
+}
+
+/* From one hint on it, at x = 0.5. */
+static void a_ridge_is_followed(void **state)
+{
+    (void)state;
+    const double whole = sigma * sqrt(PI) * sqrt(1 + slope * slope);
+    struct estimate e = { 0, 0 };
+    struct quadrature_hint hint = { 0.5, 0.3 + slope * 0.5, 1 };
+    struct quadrature_job job[GRID * GRID];
+    long budget = 10000000;
+    for (int i = 0; i < GRID * GRID; i++) {
+        const double x = i / GRID, y = i % GRID;
+        job[i] = (struct quadrature_job){
+            { x / GRID, (x + 1) / GRID, y / GRID, (y + 1) / GRID }, NULL, 0, &e
+        };
+    }
+    const int at = GRID / 2 * GRID + (int)(hint.y * GRID);
+    job[at].hint = &hint;
+    job[at].n = 1;
+    assert_true(quadrature_joined(ridge, NULL, 1, job, GRID * GRID, beside,
+                                  NULL, 1e-10, &budget));
+    assert_close(e.value, whole, 1e-8);
+
+    const struct quadrature_job one = { { 0, 1, 0, 1 }, &hint, 1, &e };
+    e = (struct estimate){ 0, 0 };
+    assert_true(quadrature(ridge, NULL, 1, &one, 1, 1e-10, &budget));
+    assert_close(e.value, whole, 1e-8);
+    assert_true(budget > 8000000);
+}
+
 static void a_mesh_never_more_than_doubles(void **state)
 {
     (void)state;
@@ -196,6 +256,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         { "the rules are exact to degree nine", degree_nine_is_exact },
+        { "a ridge is followed from one hint", a_ridge_is_followed },
         { "a graded mesh keeps its edges and its limits",
           a_mesh_never_more_than_doubles },
         { "bins seen from the normal have their analytic masses",

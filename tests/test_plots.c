@@ -1,185 +1,12 @@
 /* test_plots.c - pictures that are whole, repeatable and right, and the tables
- * and scripts beside them
- *
- * bsdf-plot is in the folder that BIN names, build/bin by default; the test
- * runs in the root of the repository and writes only into a folder of its own.
+ * and scripts beside them; test_figures.c has every kind in every form
  */
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <unistd.h>
-
 #include "bsdf/bsdf.h"
 #include "bsdf/ior.h"
 #include "bsdf/utf8.h"
 #include "plots/axis.h"
 #include "plots/gnuplot.h"
-#include "tests/close.h"
-#include "tests/shell.h"
-
-enum { OUTPUT_MAX = 1 << 16, COLUMNS_MAX = 16 };
-
-static char bin[4096], folder[64], output[OUTPUT_MAX];
-
-/* Runs a shell command with the program in PATH and the test's own folder as
- * $T; its exit status, or -1 if it was killed; output has what it printed. */
-static int sh(const char *command)
-{
-    return shell(command, output, OUTPUT_MAX);
-}
-
-/* Commands that all succeed, without a word on standard error. */
-static void quiet(const char *command)
-{
-    char line[4096];
-    snprintf(line, sizeof line, "{ set -e; %s; } 2>&1 >$T/out </dev/null",
-             command);
-    const int status = sh(line);
-    if (status != 0 || *output)
-        print_error("%s: status %d: %s\n", command, status, output);
-    assert_int_equal(status, 0);
-    assert_string_equal(output, "");
-}
-
-/* A wrong request: status 2, both parts on standard error, and no file. */
-static void refused(const char *command, const char *a, const char *b)
-{
-    char line[1024];
-    quiet("mkdir $T/refused");
-    snprintf(line, sizeof line,
-             "{ cd $T/refused && %s; } 2>&1 >$T/printed </dev/null", command);
-    const int status = sh(line);
-    if (status != 2)
-        print_error("%s: status %d: %s\n", command, status, output);
-    assert_int_equal(status, 2);
-    assert_has(output, a);
-    assert_has(output, b);
-    quiet("[ ! -s $T/printed ]; rmdir $T/refused");
-}
-
-static int setup(void **state)
-{
-    (void)state;
-    const char *given = getenv("BIN");
-    if (!realpath(given ? given : "build/bin", bin))
-        return -1;
-    char path[8192];
-    snprintf(path, sizeof path, "%s:%s", bin, getenv("PATH"));
-    setenv("PATH", path, 1);
-    unsetenv("BSDF_IOR_PATH");
-    strcpy(folder, "/tmp/bsdf-plots-XXXXXX");
-    if (!mkdtemp(folder))
-        return -1;
-    return setenv("T", folder, 1);
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    return sh("rm -rf \"$T\"");
-}
-
-/* -- files ----------------------------------------------------------------- */
-
-static char *read_all(const char *name, size_t *size)
-{
-    char path[512];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *f = fopen(path, "rb");
-    if (!f)
-        print_error("%s is not there\n", path);
-    assert_non_null(f);
-    assert_int_equal(fseek(f, 0, SEEK_END), 0);
-    *size = (size_t)ftell(f);
-    rewind(f);
-    char *bytes = malloc(*size + 1);
-    assert_non_null(bytes);
-    assert_int_equal(fread(bytes, 1, *size, f), *size);
-    bytes[*size] = '\0';
-    fclose(f);
-    return bytes;
-}
-
-static unsigned long big_endian(const char *bytes)
-{
-    unsigned long n = 0;
-    for (int i = 0; i < 4; i++)
-        n = n << 8 | (unsigned char)bytes[i];
-    return n;
-}
-
-static void assert_whole(const char *name)
-{
-    size_t size;
-    char *bytes = read_all(name, &size);
-    const char *form = strrchr(name, '.');
-    assert_true(size > 1000);
-    if (strcmp(form, ".svg") == 0) {
-        assert_memory_equal(bytes, "<?xml", 5);
-        assert_has(bytes, "<svg");
-        assert_has(bytes + size - 10, "</svg>");
-    } else if (strcmp(form, ".png") == 0) {
-        assert_memory_equal(bytes, "\x89PNG\r\n\x1a\n", 8);
-        assert_memory_equal(bytes + 12, "IHDR", 4);
-        assert_int_equal(big_endian(bytes + 16), 1600);
-        assert_true(big_endian(bytes + 20) > 600);
-        assert_memory_equal(bytes + size - 8, "IEND", 4);
-    } else {
-        assert_memory_equal(bytes, "%PDF", 4);
-        assert_has(bytes + size - 8, "%%EOF");
-        assert_non_null(memmem(bytes, size, "(D:20000101000000", 17));
-    }
-    free(bytes);
-}
-
-/* A table without its comments, row by row; NaN where it says so. */
-struct table {
-    size_t rows, columns;
-    double *value;
-};
-
-static double table_at(const struct table *t, size_t row, size_t column)
-{
-    return t->value[row * t->columns + column];
-}
-
-/* The block that ends with so many blank lines; one of fewer is skipped. */
-static struct table table_read_block(const char *name, int ending)
-{
-    struct table t = { 0, 0, NULL };
-    size_t size, room = 0;
-    int blank = 0;
-    char *bytes = read_all(name, &size), *rest = bytes;
-    for (char *line; (line = strsep(&rest, "\n")) && rest;) {
-        size_t n = 0;
-        blank = *line == '\0' ? blank + 1 : 0;
-        if (blank == ending)
-            break;
-        if (*line == '#' || blank)
-            continue;
-        double row[COLUMNS_MAX];
-        for (char *end; *line && n < COLUMNS_MAX; line = end + (*end == '\t')) {
-            row[n++] = strtod(line, &end);
-            assert_true(end != line);
-        }
-        assert_true(t.rows == 0 || n == t.columns);
-        t.columns = n;
-        if (t.rows == room) {
-            room = room ? 2 * room : 1024;
-            t.value = realloc(t.value, room * n * sizeof *t.value);
-            assert_non_null(t.value);
-        }
-        memcpy(t.value + t.rows++ * n, row, n * sizeof *row);
-    }
-    free(bytes);
-    assert_true(t.rows > 0);
-    return t;
-}
-
-static struct table table_read(const char *name)
-{
-    return table_read_block(name, 1);
-}
+#include "tests/plotting.h"
 
 /* -- the pictures ---------------------------------------------------------- */
 
@@ -215,10 +42,12 @@ static void every_kind_in_every_form_is_whole_and_redraws_itself(void **state)
                  name);
         quiet(line);
         assert_whole(name);
-        snprintf(line, sizeof line,
-                 "printf '%%s\\n' $T/f%d.tsv $T/f%d.gp $T/%s | cmp - $T/made; "
-                 "cd $T; mv %s first; gnuplot f%d.gp",
-                 i, i, name, name, i);
+        snprintf(
+            line, sizeof line,
+            "printf '%%s\\n' $T/f%d.tsv $T/f%d.gp $T/f%d.caption $T/%s | cmp - "
+            "$T/made; "
+            "cd $T; mv %s first; gnuplot f%d.gp",
+            i, i, i, name, name, i);
         quiet(line);
         size_t size, again;
         char *a = read_all("first", &size), *b = read_all(name, &again);
@@ -288,9 +117,10 @@ static void without_gnuplot_the_table_and_the_script_are_made(void **state)
     assert_int_equal(sh(line), 2);
     assert_has(output, "gnuplot");
     assert_has(output, "PATH");
-    quiet(
-        "cd $T; printf 'x.tsv\\nx.gp\\n' | cmp - made; cd none; gnuplot x.gp; "
-        "[ \"$(ls | tr '\\n' ' ')\" = 'x.gp x.svg x.tsv ' ]; rm -r $T/none");
+    quiet("cd $T; printf 'x.tsv\\nx.gp\\nx.caption\\n' | cmp - made; cd none; "
+          "gnuplot "
+          "x.gp; [ \"$(ls | tr '\\n' ' ')\" = 'x.caption x.gp x.svg x.tsv ' ]; "
+          "rm -r $T/none");
 }
 
 static void gnuplots_own_words_are_passed_on(void **state)
@@ -310,7 +140,7 @@ static void wrong_requests_are_refused(void **state)
 {
     (void)state;
     refused("bsdf-plot lobe diffuse --wo 1,0 -o x.jpg", "\".jpg\"",
-            ".svg, .pdf or .png");
+            ".svg, .pdf, .png or .tex");
     refused("bsdf-plot lobe diffuse --wo 1,0 -o x", "no extension", ".svg");
     refused("bsdf-plot lobe diffuse --wo 1,0 -o .svg", "name before", ".svg");
     refused("bsdf-plot lobe diffuse --wo 1,0 -o none/x.svg", "none/x.svg",
@@ -320,11 +150,12 @@ static void wrong_requests_are_refused(void **state)
     refused("bsdf-plot lobes diffuse --wo 1,0", "\"lobes\"",
             "did you mean \"lobe\"?");
     refused("bsdf-plot none diffuse --wo 1,0", "\"none\"",
-            "lobe, lobe3d, histogram, ior, report");
+            "lobe, lobe3d, histogram, slice, albedo, convergence, compare, "
+            "ndf, fresnel, ior, colour, kill-matrix, p-values, report");
     refused("bsdf-plot", "kind", "SPEC");
     refused("bsdf-plot lobe", "lobe", "SPEC");
     refused("bsdf-plot lobe diffuse", "--wo", "degrees");
-    refused("bsdf-plot lobe diffuse x --wo 1,0", "\"x\"", "too many");
+    refused("bsdf-plot histogram diffuse x --wo 1,0", "\"x\"", "too many");
     refused("bsdf-plot lobe diffuse:reflectance=2 --wo 1,0", "reflectance",
             "[0, 1]");
     refused("bsdf-plot lobe diffuse --wo 120,0", "120", "nothing to draw");

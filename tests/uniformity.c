@@ -20,8 +20,8 @@
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_sf_gamma.h>
+#include <gsl/gsl_sort.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "bsdf/vec.h"
 
@@ -57,12 +57,6 @@ double smirnov_tail(size_t n, double d)
     return fmin(sum, 1);
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 struct uniformity uniformity_of(double *value, size_t n)
 {
     struct uniformity u = { .n = n, .p = 1, .p_above = 1 };
@@ -70,7 +64,7 @@ struct uniformity uniformity_of(double *value, size_t n)
     for (size_t i = 0; i < n; i++)
         if (!(value[i] >= 0 && value[i] <= 1))
             return (struct uniformity){ n, 1, 1, 0, 0 };
-    qsort(value, n, sizeof *value, ascending);
+    gsl_sort(value, 1, n);
     for (size_t i = 0; i < n; i++) {
         u.above = fmax(u.above, (double)(i + 1) / count - value[i]);
         u.below = fmax(u.below, value[i] - (double)i / count);

@@ -37,25 +37,18 @@ static void energy_at(const void *context, size_t n, struct dirs w,
     }
 }
 
-/* The median of the rounding of f over drawn directions, as f is rounded anew
- * at every node. */
+/* Of f over drawn directions, as f is rounded anew at every node. */
 static double typical_rounding(const struct subject *s)
 {
     enum { DRAWS = 65 };
     struct bsdf_sample sample[DRAWS];
-    double off[DRAWS];
+    struct vec3 wi[DRAWS];
     size_t n = 0;
     subject_draw(s, subject_rng(s, STREAM_PAIRS), 0, DRAWS, sample);
-    for (size_t i = 0; i < DRAWS; i++) {
-        if (!subject_spread(&sample[i]))
-            continue;
-        const double r = subject_rounding(s, sample[i].wi, false);
-        size_t at = n++;
-        for (; at > 0 && off[at - 1] > r; at--)
-            off[at] = off[at - 1];
-        off[at] = r;
-    }
-    return n ? off[n / 2] : 0;
+    for (size_t i = 0; i < DRAWS; i++)
+        if (subject_spread(&sample[i]))
+            wi[n++] = sample[i].wi;
+    return subject_typical_rounding(s, wi, n, false);
 }
 
 static bool by_quadrature(const struct subject *s, struct energy *e)
@@ -69,7 +62,7 @@ static bool by_quadrature(const struct subject *s, struct energy *e)
     const bool ok =
         part && partition_integrate(v->partition, energy_at, s, parts,
                                     energy_tolerance + rounding / 400,
-                                    energy_budget, part);
+                                    subject_batch(s), energy_budget, part);
     for (int b = 0; ok && b < parts; b++)
         for (size_t i = 0; i < bins; i++)
             sum[b] = estimate_add(sum[b], part[i * (size_t)parts + (size_t)b]);

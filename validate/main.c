@@ -19,16 +19,12 @@ enum {
     OPT_REPLAY,
     OPT_PROGRAMS,
     OPT_SPEC,
-    OPT_SEED,
     OPT_SAMPLES,
     OPT_SIGNIFICANCE,
     OPT_WO,
     OPT_THREADS,
     OPT_ESCALATIONS,
     OPT_SKIP,
-    OPT_NM,
-    OPT_RGB,
-    OPT_IOR_PATH,
     OPT_LIST,
     OPT_TIME_LIMIT
 };
@@ -39,7 +35,7 @@ static const uint64_t all_samples = 100000;
 
 struct request {
     struct plan plan;
-    struct bands bands;
+    struct cli_shared shared;
     struct vec3 wo[WO_MAX];
     size_t wos;
     const char *spec[SPECS_MAX];
@@ -74,7 +70,6 @@ static const struct argp_option options[] = {
       "drawn for each model and direction, "
       "1000 to 1e9; 1e6, or 1e5 with --all",
       0 },
-    { "seed", OPT_SEED, "S", 0, "of the random numbers; 1", 0 },
     { "significance", OPT_SIGNIFICANCE, "A", 0,
       "chance that a run of sound "
       "models fails; 1e-6",
@@ -91,14 +86,6 @@ static const struct argp_option options[] = {
       0 },
     { "time-limit", OPT_TIME_LIMIT, "SECONDS", 0,
       "for each request to a model in another program; 10", 0 },
-    { "nm", OPT_NM, "A,B,C", 0, "bands: one to four wavelengths", 0 },
-    { "rgb", OPT_RGB, "METHOD", 0,
-      "bands: R, G, B by fit (if neither is given), average or fixed:A,B,C",
-      0 },
-    { "ior-path", OPT_IOR_PATH, "DIR", 0,
-      "a refractiveindex.info database "
-      "(or BSDF_IOR_PATH)",
-      0 },
     { "json", OPT_JSON, "FILE", 0, "write the whole run there as well", 0 },
     { "junit", OPT_JUNIT, "FILE", 0,
       "write it as JUnit's XML, for continuous integration", 0 },
@@ -123,9 +110,8 @@ static const struct argp_option options[] = {
 /* Whether an option is one that a report answers. */
 static bool of_the_report(int key)
 {
-    static const int keys[] = { OPT_SEED, OPT_SAMPLES,     OPT_SIGNIFICANCE,
-                                OPT_WO,   OPT_ESCALATIONS, OPT_SKIP,
-                                OPT_NM,   OPT_RGB };
+    static const int keys[] = { OPT_SAMPLES, OPT_SIGNIFICANCE, OPT_WO,
+                                OPT_ESCALATIONS, OPT_SKIP };
     bool found = false;
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
         found |= keys[i] == key;
@@ -152,8 +138,9 @@ static bool request_check(const struct request *r, struct err *err)
         return err_set(err,
                        "--replay: expected no SPEC and no --all; the report "
                        "has them");
-    if (r->replay && r->own)
-        return err_set(err, "--replay: --%s is what the report says", r->own);
+    const char *own = r->own ? r->own : r->shared.given;
+    if (r->replay && own)
+        return err_set(err, "--replay: --%s is what the report says", own);
     if (r->replay_spec && !r->replay)
         return err_set(err, "--spec: expected --replay FILE with it");
     if (!r->replay && r->specs == 0)
@@ -173,6 +160,9 @@ static error_t option(int key, char *arg, struct argp_state *state)
         if (options[i].key == key && of_the_report(key))
             r->own = options[i].name;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &r->shared;
+        break;
     case OPT_ALL:
         r->all = true;
         for (int i = 0; run_all_specs[i] && r->specs < SPECS_MAX; i++)
@@ -188,9 +178,6 @@ static error_t option(int key, char *arg, struct argp_state *state)
     case OPT_SAMPLES:
         ok = cli_count(&r->plan.samples, "--samples", arg, 1000, 1000000000,
                        &err);
-        break;
-    case OPT_SEED:
-        ok = cli_count(&r->plan.seed, "--seed", arg, 0, INT64_MAX, &err);
         break;
     case OPT_SIGNIFICANCE:
         ok = cli_number(&r->plan.significance, "--significance", arg, 1e-100,
@@ -211,15 +198,6 @@ static error_t option(int key, char *arg, struct argp_state *state)
         ok = cli_number(&seconds, "--time-limit", arg, 0.001, 1e6, &err);
         if (ok)
             pipe_set_time_limit(seconds);
-        break;
-    case OPT_NM:
-        ok = bands_parse(&r->bands, arg, &err);
-        break;
-    case OPT_RGB:
-        ok = bands_parse_rgb(&r->bands, arg, &err);
-        break;
-    case OPT_IOR_PATH:
-        ok = cli_ior_path(arg, &err);
         break;
     case OPT_JSON:
         r->json = arg;
@@ -284,7 +262,7 @@ static int validate(struct request *r, int words, char *const *word,
     if (r->plan.samples == 0) /* not asked for */
         r->plan.samples = r->all ? all_samples : plan_default.samples;
     for (size_t i = 0; i < r->specs; i++) {
-        bsdf[i] = foreign_new(r->spec[i], &r->bands, err);
+        bsdf[i] = foreign_new(r->spec[i], &r->shared.bands, err);
         if (!bsdf[i])
             goto done;
         if (err->text[0])
@@ -339,13 +317,17 @@ int main(int argc, char **argv)
     memcpy(word, argv, (size_t)argc * sizeof *word);
     r.plan = plan_default;
     r.plan.samples = 0;
-    r.bands = bands_default;
+    r.shared =
+        (struct cli_shared){ .bands = bands_default, .seed = r.plan.seed };
     gsl_set_error_handler_off();
     (void)cli_elapsed();
     argp_err_exit_status = EXIT_REQUEST;
     argp_parse(&(struct argp){ options, option, "SPEC...\n--replay FILE", about,
-                               0, 0, 0 },
+                               (const struct argp_child[]){
+                                   { &cli_shared_argp, 0, 0, 0 }, { 0 } },
+                               0, 0 },
                argc, argv, 0, NULL, &r);
+    r.plan.seed = r.shared.seed;
     int status = r.replay ? replay(&r, argc, word, &err)
                           : validate(&r, argc, word, &err);
     if (status == EXIT_REQUEST)

@@ -5,12 +5,13 @@
  */
 #include "validate/partition.h"
 
+#include <gsl/gsl_sort.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
 #include "bsdf/lanes.h"
 
-enum { QUANTILES = 20, INTERVALS_MAX = 192 };
+enum { QUANTILES = 20, INTERVALS_MAX = 192 }; /* numbers of bytes */
 enum { COARSE_THETA = 5, COARSE_PHI = 4 };
 
 /* Intervals between sorted edges, and the group of QUANTILES that each is in
@@ -49,8 +50,10 @@ struct partition {
     struct side side[2]; /* above and below */
     struct search search;
     size_t bins;
-    struct vec3 *pilot; /* by bins */
-    size_t *first;      /* pilot of each bin; one more at the end */
+    unsigned char *strip; /* of each bin */
+    double *pilot;        /* x, y and z of all of them */
+    struct dirs pilots;   /* the same, by bins */
+    size_t *first;        /* pilot of each bin; one more at the end */
 };
 
 struct polar {
@@ -72,12 +75,6 @@ static int by_theta(const void *a, const void *b)
 {
     const double x = ((const struct polar *)a)->theta;
     const double y = ((const struct polar *)b)->theta;
-    return (x > y) - (x < y);
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
@@ -200,7 +197,7 @@ static void side_cut(struct side *s, double from, double to,
         const size_t last = few ? n : (k + 1) * n / QUANTILES;
         for (size_t i = first; i < last; i++)
             value[i] = pilot[i].phi;
-        qsort(value + first, last - first, sizeof *value, ascending);
+        gsl_sort(value + first, 1, last - first);
         cut(&s->phi[k], value + first, last - first, -PI, PI, PI / 4);
     }
     keys_make(s);
@@ -274,13 +271,28 @@ static void find(const struct partition *p, size_t n, struct dirs w,
     }
 }
 
+static bool strips_keep(struct partition *p)
+{
+    p->strip = malloc(p->bins);
+    size_t bin = 0;
+    for (int below = 0; p->strip && below < 2; below++) {
+        const struct side *s = &p->side[below];
+        for (size_t i = 0; i < s->theta.count; i++)
+            for (size_t k = s->phi[s->theta.quantile[i]].count; k > 0; k--)
+                p->strip[bin++] = (unsigned char)i;
+    }
+    return p->strip;
+}
+
 /* Keeps the pilots in the order of their bins. */
 static bool pilots_keep(struct partition *p, const struct vec3 *pilot, size_t n)
 {
-    p->pilot = malloc((n + 1) * sizeof *p->pilot);
+    p->pilot = malloc((3 * n + 1) * sizeof *p->pilot);
     p->first = calloc(p->bins + 2, sizeof *p->first);
     uint32_t *bin = malloc((n + 1) * sizeof *bin);
     const bool ok = p->pilot && p->first && bin;
+    if (ok)
+        p->pilots = (struct dirs){ p->pilot, p->pilot + n, p->pilot + 2 * n };
     for (size_t at = 0; ok && at < n; at += LANES_MAX) {
         double x[LANES_MAX], y[LANES_MAX], z[LANES_MAX];
         const size_t k = n - at < LANES_MAX ? n - at : LANES_MAX;
@@ -294,8 +306,12 @@ static bool pilots_keep(struct partition *p, const struct vec3 *pilot, size_t n)
     for (size_t k = 0; ok && k <= p->bins; k++)
         p->first[k + 1] += p->first[k];
     /* first[k] runs up to where k + 1 starts, and is put back. */
-    for (size_t i = 0; ok && i < n; i++)
-        p->pilot[p->first[bin[i]]++] = pilot[i];
+    for (size_t i = 0; ok && i < n; i++) {
+        const size_t at = p->first[bin[i]]++;
+        p->pilot[at] = pilot[i].x;
+        p->pilot[n + at] = pilot[i].y;
+        p->pilot[2 * n + at] = pilot[i].z;
+    }
     for (size_t k = p->bins + 1; ok && k > 0; k--)
         p->first[k] = p->first[k - 1];
     if (ok)
@@ -334,7 +350,7 @@ struct partition *partition_new(const struct vec3 *pilot, size_t n, size_t m)
         side_cut(s, below * PI / 2, (below + 1) * PI / 2, polar, count, value,
                  &p->bins);
     }
-    if (!search_make(p) || !pilots_keep(p, pilot, n + m)) {
+    if (!search_make(p) || !strips_keep(p) || !pilots_keep(p, pilot, n + m)) {
         partition_free(p);
         p = NULL;
     }
@@ -350,6 +366,7 @@ void partition_free(struct partition *p)
         return;
     free(p->search.theta);
     free(p->search.phi);
+    free(p->strip);
     free(p->pilot);
     free(p->first);
     free(p);
@@ -378,9 +395,7 @@ struct place {
 static struct place place_of(const struct partition *p, size_t bin)
 {
     const struct side *s = &p->side[bin >= p->side[1].first[0]];
-    size_t i = s->theta.count - 1;
-    while (s->first[i] > bin)
-        i--;
+    const size_t i = p->strip[bin];
     return (struct place){ s, &s->phi[s->theta.quantile[i]], i,
                            bin - s->first[i] };
 }
@@ -420,24 +435,60 @@ struct patch partition_patch(const struct partition *p, size_t bin)
                            at.side->phi0 + phi[1] };
 }
 
+/* The slice that holds an azimuth, of one strip. */
+static size_t slice_at(const struct cuts *phi, double at)
+{
+    size_t low = 0, high = phi->count;
+    while (high - low > 1) {
+        const size_t middle = (low + high) / 2;
+        if (at < phi->edge[middle])
+            high = middle;
+        else
+            low = middle;
+    }
+    return low;
+}
+
+/* The bin beyond an edge of one; none beyond the normals and the horizon. */
+static size_t bin_beside(const void *partition, size_t bin,
+                         enum quadrature_side side, double *theta, double *phi)
+{
+    const struct place at = place_of(partition, bin);
+    const struct side *s = at.side;
+    (void)theta;
+    if (side == QUADRATURE_Y0 || side == QUADRATURE_Y1) {
+        const size_t last = at.phi->count - 1;
+        if (side == QUADRATURE_Y0 ? at.slice > 0 : at.slice < last)
+            return side == QUADRATURE_Y0 ? bin - 1 : bin + 1;
+        *phi += side == QUADRATURE_Y0 ? 2 * PI : -2 * PI;
+        return side == QUADRATURE_Y0 ? bin + last : bin - last;
+    }
+    if (side == QUADRATURE_X0 ? at.strip == 0 : at.strip + 1 == s->theta.count)
+        return QUADRATURE_NONE;
+    const size_t strip = side == QUADRATURE_X0 ? at.strip - 1 : at.strip + 1;
+    const struct cuts *slices = &s->phi[s->theta.quantile[strip]];
+    return s->first[strip] +
+           (slices == at.phi ? at.slice : slice_at(slices, *phi - s->phi0));
+}
+
 bool partition_integrate(const struct partition *p, sphere_fn *f,
                          const void *context, int parts, double tolerance,
-                         long budget, struct estimate *out)
+                         size_t batch, long budget, struct estimate *out)
 {
     struct patch_job *job = malloc((p->bins + 1) * sizeof *job);
     bool ok = job;
     for (size_t bin = 0; ok && bin < p->bins; bin++) {
         job[bin] = (struct patch_job){
             .patch = partition_patch(p, bin),
-            .hint = p->pilot + p->first[bin],
+            .hint = dirs_from(p->pilots, p->first[bin]),
             .n = p->first[bin + 1] - p->first[bin],
             .out = out + bin * (size_t)parts,
         };
         for (int part = 0; part < parts; part++)
             job[bin].out[part] = (struct estimate){ 0, 0 };
     }
-    ok = ok &&
-         patches_integrate(f, context, parts, job, p->bins, tolerance, &budget);
+    ok = ok && patches_integrate(f, context, parts, job, p->bins, bin_beside, p,
+                                 tolerance, batch, &budget);
     free(job);
     return ok;
 }

@@ -40,10 +40,11 @@ size_t partition_group(const struct partition *p, enum partition_grouping by,
                        size_t bin);
 
 /** Integrates over each bin: out[bin * parts + part].  See quadrature; the
- * pilots and the further directions are the hints.  The budget is for all bins
- * together.  False when out of memory. */
+ * pilots and the further directions are the hints.  f is asked about up to a
+ * batch of directions at a time; the budget is for all bins together.  False
+ * when out of memory. */
 bool partition_integrate(const struct partition *p, sphere_fn *f,
                          const void *context, int parts, double tolerance,
-                         long budget, struct estimate *out);
+                         size_t batch, long budget, struct estimate *out);
 
 #endif

@@ -11,7 +11,10 @@
  * A rule sees only what its nodes see.  A mesh must be graded toward a peak,
  * never laid over it, and have its edges where the integrand has kinks; and
  * where the integrand is known to be large, as at a sampled direction, a hint
- * keeps the rule splitting until its nodes have seen that.
+ * keeps the rule splitting until its nodes have seen that.  Where the nodes on
+ * an edge have met what the rectangle beyond it has not, that one is integrated
+ * again with a hint there: so a narrow ridge is followed from rectangle to
+ * rectangle, wherever it was found first.
  *
  * All rectangles are refined side by side, so that the integrand is asked for
  * thousands of values at once.  The result does not depend on how they are
@@ -64,6 +67,27 @@ struct quadrature_job {
 bool quadrature(quadrature_fn *f, const void *context, int parts,
                 const struct quadrature_job *job, size_t jobs, double tolerance,
                 long *budget);
+
+/** Which job lies beyond an edge of a job at a point on that edge, which is put
+ * into that one's coordinates; QUADRATURE_NONE where there is none. */
+enum quadrature_side {
+    QUADRATURE_X0,
+    QUADRATURE_X1,
+    QUADRATURE_Y0,
+    QUADRATURE_Y1,
+    QUADRATURE_SIDES
+};
+#define QUADRATURE_NONE ((size_t)-1)
+typedef size_t quadrature_beside(const void *mesh, size_t job,
+                                 enum quadrature_side side, double *x,
+                                 double *y);
+
+/** The same where the rectangles of the jobs are parts of a mesh, so that
+ * ridges are followed from one to another; beside may be NULL. */
+bool quadrature_joined(quadrature_fn *f, const void *context, int parts,
+                       const struct quadrature_job *job, size_t jobs,
+                       quadrature_beside *beside, const void *mesh,
+                       double tolerance, long *budget);
 
 /** Cuts the intervals between n sorted edges so that none is wider than widest
  * or more than twice as wide as the narrower one beside it was.  Writes at

@@ -250,7 +250,8 @@ bool run_pairs(struct run *run, const struct plan *plan,
     }
     if (!ok)
         err_set(err, "out of memory");
-    ok = ok && run_stages(run, progress, context, err) && diagnoses(run, err);
+    ok = ok && run_stages(run, progress, context, err) &&
+         (plan->unexplained || diagnoses(run, err));
     if (!ok) {
         run_clear(run);
         return false;

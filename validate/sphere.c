@@ -1,6 +1,7 @@
 /* sphere.c - quadrature in polar angles */
 #include "validate/sphere.h"
 
+#include <gsl/gsl_sort.h>
 #include <stdlib.h>
 
 #include "bsdf/fastmath.h"
@@ -8,24 +9,30 @@
 
 enum { ORDER = QUADRATURE_ORDER, NODES = QUADRATURE_NODES };
 
-/* The integrand, and room for a batch of directions. */
+/* The integrand, and room for a batch of directions and what it is there. */
 struct over {
     sphere_fn *f;
     const void *context;
     int parts;
-    size_t size;
-    double *x, *y, *z, *sine;
+    size_t rules, size; /* of a batch: the latter in directions */
+    double *x, *y, *z, *sine, *value;
 };
 
-static bool over_make(struct over *o, size_t size)
+static bool over_make(struct over *o, size_t batch)
 {
-    double *room = malloc(4 * size * sizeof *room);
-    o->size = size;
+    o->rules = batch / NODES < 1                  ? 1
+               : batch / NODES > QUADRATURE_RULES ? QUADRATURE_RULES
+                                                  : batch / NODES;
+    o->size = o->rules * NODES;
+    double *room = malloc((4 + (size_t)o->parts) * o->size * sizeof *room);
     o->x = room;
-    o->y = room ? room + size : NULL;
-    o->z = room ? room + 2 * size : NULL;
-    o->sine = room ? room + 3 * size : NULL;
-    return room;
+    if (!room)
+        return false;
+    o->y = room + o->size;
+    o->z = room + 2 * o->size;
+    o->sine = room + 3 * o->size;
+    o->value = room + 4 * o->size;
+    return true;
 }
 
 /* The directions of the nodes of n rules, ORDER angles each way. */
@@ -41,25 +48,26 @@ LANES static void directions(const struct over *over, size_t n,
     LANES_LOOP
     for (size_t i = 0; i < n * ORDER; i++)
         fm_sincos(phi[i], &sp[i], &cp[i]);
-    for (size_t row = 0, at = 0; row < n * ORDER; row++, at += ORDER) {
-        const double s = st[row], c = ct[row];
-        const double *sine = sp + row / ORDER * ORDER;
-        const double *cosine = cp + row / ORDER * ORDER;
-        LANES_LOOP
-        for (size_t k = 0; k < ORDER; k++) {
-            o.x[at + k] = s * cosine[k];
-            o.y[at + k] = s * sine[k];
-            o.z[at + k] = c;
-            o.sine[at + k] = s;
+    for (size_t rule = 0; rule < n * ORDER; rule += ORDER)
+        for (size_t row = rule; row < rule + ORDER; row++) {
+            const double s = st[row], c = ct[row];
+            const size_t at = row * ORDER;
+            LANES_LOOP
+            for (size_t k = 0; k < ORDER; k++) {
+                o.x[at + k] = s * cp[rule + k];
+                o.y[at + k] = s * sp[rule + k];
+                o.z[at + k] = c;
+                o.sine[at + k] = s;
+            }
         }
-    }
 }
 
-LANES static void multiply(size_t n, double *value, const double *by)
+LANES static void product(size_t n, const double *a, const double *b,
+                          double *out)
 {
     LANES_LOOP
     for (size_t i = 0; i < n; i++)
-        value[i] *= by[i];
+        out[i] = a[i] * b[i];
 }
 
 static void on_patches(const void *context, size_t n,
@@ -67,10 +75,15 @@ static void on_patches(const void *context, size_t n,
                        double *value)
 {
     const struct over *o = context;
-    directions(o, n, *theta, *phi);
-    o->f(o->context, n * NODES, (struct dirs){ o->x, o->y, o->z }, value);
-    for (int part = 0; part < o->parts; part++)
-        multiply(n * NODES, value + (size_t)part * n * NODES, o->sine);
+    for (size_t at = 0, k; at < n; at += k) {
+        k = n - at < o->rules ? n - at : o->rules;
+        directions(o, k, theta[at], phi[at]);
+        o->f(o->context, k * NODES, (struct dirs){ o->x, o->y, o->z },
+             o->value);
+        for (size_t part = 0; part < (size_t)o->parts; part++)
+            product(k * NODES, o->value + part * k * NODES, o->sine,
+                    value + (part * n + at) * NODES);
+    }
 }
 
 /* Where n directions of o are in their patches, of which o->sine has the middle
@@ -101,14 +114,14 @@ LANES static void heights(const struct over *o, size_t n, const double *value,
         hint[i].height = fm_max(fabs(value[i]) * o->sine[i], hint[i].height);
 }
 
-static void hints_fill(const struct over *o, size_t n, double *value,
+static void hints_fill(const struct over *o, size_t n,
                        struct quadrature_hint *hint)
 {
     places(o, n, hint);
     for (size_t i = 0; i < n; i++)
         hint[i].height = 0;
-    o->f(o->context, n, (struct dirs){ o->x, o->y, o->z }, value);
-    heights(o, n, value, hint);
+    o->f(o->context, n, (struct dirs){ o->x, o->y, o->z }, o->value);
+    heights(o, n, o->value, hint);
 }
 
 static size_t heeded(const struct patch_job *job)
@@ -116,32 +129,47 @@ static size_t heeded(const struct patch_job *job)
     return job->n < PATCH_HINTS_MAX ? job->n : PATCH_HINTS_MAX;
 }
 
+/* Copies n directions of a job, from `at` on, behind those that wait. */
+LANES static void wait(const struct over *over, size_t waiting,
+                       const struct patch_job *job, size_t at, size_t n)
+{
+    const struct over o = *over;
+    const struct dirs w = dirs_from(job->hint, at);
+    const double middle = (job->patch.phi0 + job->patch.phi1) / 2;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        o.x[waiting + i] = w.x[i];
+        o.y[waiting + i] = w.y[i];
+        o.z[waiting + i] = w.z[i];
+        o.sine[waiting + i] = middle;
+    }
+}
+
 /* Fills the hints of all jobs, one job's behind another's. */
-static bool hints_make(const struct over *o, const struct patch_job *job,
+static void hints_make(const struct over *o, const struct patch_job *job,
                        size_t jobs, struct quadrature_hint *hint)
 {
-    double *value = malloc(o->size * (size_t)o->parts * sizeof *value);
     size_t waiting = 0;
-    for (size_t i = 0; value && i < jobs; i++)
-        for (size_t k = 0; k < heeded(&job[i]); k++) {
-            const struct vec3 w = job[i].hint[k];
-            o->x[waiting] = w.x, o->y[waiting] = w.y, o->z[waiting] = w.z;
-            o->sine[waiting++] = (job[i].patch.phi0 + job[i].patch.phi1) / 2;
+    for (size_t i = 0; i < jobs; i++)
+        for (size_t at = 0, n; at < heeded(&job[i]); at += n) {
+            const size_t left = heeded(&job[i]) - at, room = o->size - waiting;
+            n = left < room ? left : room;
+            wait(o, waiting, &job[i], at, n);
+            waiting += n;
             if (waiting == o->size) {
-                hints_fill(o, waiting, value, hint);
+                hints_fill(o, waiting, hint);
                 hint += waiting;
                 waiting = 0;
             }
         }
-    if (value && waiting > 0)
-        hints_fill(o, waiting, value, hint);
-    free(value);
-    return value;
+    if (waiting > 0)
+        hints_fill(o, waiting, hint);
 }
 
 bool patches_integrate(sphere_fn *f, const void *context, int parts,
                        const struct patch_job *job, size_t jobs,
-                       double tolerance, long *budget)
+                       quadrature_beside *beside, const void *mesh,
+                       double tolerance, size_t batch, long *budget)
 {
     struct over o = { .f = f, .context = context, .parts = parts };
     size_t hints = 0;
@@ -149,8 +177,9 @@ bool patches_integrate(sphere_fn *f, const void *context, int parts,
         hints += heeded(&job[i]);
     struct quadrature_job *part = malloc((jobs + 1) * sizeof *part);
     struct quadrature_hint *hint = malloc((hints + 1) * sizeof *hint);
-    bool ok = over_make(&o, QUADRATURE_RULES * NODES) && part && hint &&
-              hints_make(&o, job, jobs, hint);
+    bool ok = over_make(&o, batch) && part && hint;
+    if (ok)
+        hints_make(&o, job, jobs, hint);
     for (size_t i = 0, at = 0; ok && i < jobs; i++) {
         const struct patch p = job[i].patch;
         part[i] =
@@ -160,7 +189,8 @@ bool patches_integrate(sphere_fn *f, const void *context, int parts,
                                      job[i].out };
         at += heeded(&job[i]);
     }
-    ok = ok && quadrature(on_patches, &o, parts, part, jobs, tolerance, budget);
+    ok = ok && quadrature_joined(on_patches, &o, parts, part, jobs, beside,
+                                 mesh, tolerance, budget);
     free(part);
     free(hint);
     free(o.x);
@@ -194,12 +224,6 @@ static void on_share(const void *context, size_t n,
         }
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 struct estimate
 hemisphere_facing(double (*f)(struct vec3 w, const void *context),
                   const void *context, struct vec3 wo, double tolerance)
@@ -214,7 +238,7 @@ hemisphere_facing(double (*f)(struct vec3 w, const void *context),
     const double turn = atan2(wo.y, wo.x);
     mark[5] = fmod(turn + 5 * PI / 2, 2 * PI);
     mark[6] = fmod(turn + 7 * PI / 2, 2 * PI);
-    qsort(mark, MARKS, sizeof *mark, ascending);
+    gsl_sort(mark, 1, MARKS);
 
     double phi[EDGES];
     size_t n = 0;

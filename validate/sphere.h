@@ -31,16 +31,18 @@ typedef void sphere_fn(const void *context, size_t n, struct dirs w,
 enum { PATCH_HINTS_MAX = 256 };
 struct patch_job {
     struct patch patch;
-    const struct vec3 *hint;
+    struct dirs hint;
     size_t n;
     struct estimate *out;
 };
 
-/** Integrates over the patch of each job; see quadrature.  False when out of
- * memory. */
+/** Integrates over the patch of each job; see quadrature.  Theta is its x and
+ * phi its y for beside, which may be NULL; f is asked about up to a batch of
+ * directions at a time.  False when out of memory. */
 bool patches_integrate(sphere_fn *f, const void *context, int parts,
                        const struct patch_job *job, size_t jobs,
-                       double tolerance, long *budget);
+                       quadrature_beside *beside, const void *mesh,
+                       double tolerance, size_t batch, long *budget);
 
 /** The integral over the upper hemisphere of a function that may peak at the
  * normal, down to a width of 1e-5 rad, and along the x and y axes; NaN when out

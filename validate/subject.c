@@ -1,6 +1,7 @@
 /* subject.c - asking, drawing, and how exact the answers can be */
 #include "validate/subject.h"
 
+#include <gsl/gsl_sort.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -79,10 +80,18 @@ struct repeated {
     double x[SUBJECT_BATCH], y[SUBJECT_BATCH], z[SUBJECT_BATCH];
 };
 
+LANES static void fill(size_t n, double *x, double value)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        x[i] = value;
+}
+
 static struct dirs repeat(struct repeated *r, struct vec3 w, size_t n)
 {
-    for (size_t i = 0; i < n; i++)
-        r->x[i] = w.x, r->y[i] = w.y, r->z[i] = w.z;
+    fill(n, r->x, w.x);
+    fill(n, r->y, w.y);
+    fill(n, r->z, w.z);
     return (struct dirs){ r->x, r->y, r->z };
 }
 
@@ -212,4 +221,16 @@ double subject_rounding(const struct subject *s, struct vec3 wi, bool of_pdf)
     for (int i = 1; i < 3; i++)
         most = fmax(most, fabs(value[i] / value[0] - 1));
     return fmin(16 * s->claims.epsilon / step * most, 0.5);
+}
+
+double subject_typical_rounding(const struct subject *s, const struct vec3 *wi,
+                                size_t n, bool of_pdf)
+{
+    enum { LOOKS = 65 };
+    double off[LOOKS];
+    const size_t looks = n < LOOKS ? n : LOOKS;
+    for (size_t i = 0; i < looks; i++)
+        off[i] = subject_rounding(s, wi[i * (n / looks)], of_pdf);
+    gsl_sort(off, 1, looks);
+    return looks ? off[looks / 2] : 0;
 }

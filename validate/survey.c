@@ -197,9 +197,16 @@ enum { HINTS = 64 };
 struct slots {
     size_t *of_bin; /* 1 + the slot, or 0 */
     size_t *n;
-    struct vec3 *hint;
+    double *hint; /* x of all, then y, then z */
     size_t count;
 };
+
+static struct dirs slots_at(const struct slots *s, size_t i)
+{
+    const size_t all = s->count * HINTS;
+    return (struct dirs){ s->hint + i, s->hint + all + i,
+                          s->hint + 2 * all + i };
+}
 
 static void slots_fill(const struct subject *s, struct slots *slots,
                        struct bsdf_sample *sample)
@@ -220,8 +227,13 @@ static void slots_fill(const struct subject *s, struct slots *slots,
                                           &sample[i].wi.z },
                            &bin);
             const size_t k = bin < bins ? slots->of_bin[bin] : 0;
-            if (k > 0 && slots->n[k - 1] < HINTS)
-                slots->hint[(k - 1) * HINTS + slots->n[k - 1]++] = sample[i].wi;
+            if (k > 0 && slots->n[k - 1] < HINTS) {
+                const size_t all = slots->count * HINTS;
+                double *to = slots->hint + (k - 1) * HINTS + slots->n[k - 1]++;
+                to[0] = sample[i].wi.x;
+                to[all] = sample[i].wi.y;
+                to[2 * all] = sample[i].wi.z;
+            }
         }
     }
 }
@@ -242,7 +254,7 @@ static bool look_again(struct subject *s, double tolerance)
         if ((double)v->count[i] > expected + 4 * sqrt(expected) + 0.5)
             slots.of_bin[i] = ++slots.count;
     }
-    slots.hint = malloc((slots.count * HINTS + 1) * sizeof *slots.hint);
+    slots.hint = malloc((3 * slots.count * HINTS + 1) * sizeof *slots.hint);
     slots.n = calloc(slots.count + 1, sizeof *slots.n);
     struct patch_job *job = malloc((slots.count + 1) * sizeof *job);
     bool ok = slots.of_bin && sample && slots.hint && slots.n && job;
@@ -255,11 +267,11 @@ static bool look_again(struct subject *s, double tolerance)
                 continue;
             v->mass[i] = (struct estimate){ 0, 0 };
             job[k - 1] = (struct patch_job){ partition_patch(v->partition, i),
-                                             slots.hint + (k - 1) * HINTS,
+                                             slots_at(&slots, (k - 1) * HINTS),
                                              slots.n[k - 1], &v->mass[i] };
         }
-        ok = patches_integrate(pdf_at, s, 1, job, slots.count, tolerance,
-                               &budget);
+        ok = patches_integrate(pdf_at, s, 1, job, slots.count, NULL, NULL,
+                               tolerance, subject_batch(s), &budget);
     }
     free(job);
     free(slots.n);
@@ -335,25 +347,6 @@ static size_t tails_draw(const struct subject *s, struct vec3 *tail)
     return n;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* The median of the rounding over pilots. */
-static double typical_rounding(const struct subject *s,
-                               const struct vec3 *pilot, size_t n)
-{
-    enum { LOOKS = 65 };
-    double off[LOOKS];
-    const size_t looks = n < LOOKS ? n : LOOKS;
-    for (size_t i = 0; i < looks; i++)
-        off[i] = subject_rounding(s, pilot[i * (n / looks)], true);
-    qsort(off, looks, sizeof *off, ascending);
-    return looks ? off[looks / 2] : 0;
-}
-
 bool survey_make(struct subject *s, struct err *err)
 {
     struct survey *v = &s->survey;
@@ -361,7 +354,7 @@ bool survey_make(struct subject *s, struct err *err)
     struct vec3 *pilot = pilots_draw(s, &n);
     if (pilot) {
         v->partition = partition_new(pilot, n, tails_draw(s, pilot + n));
-        v->rounding = typical_rounding(s, pilot, n);
+        v->rounding = subject_typical_rounding(s, pilot, n, true);
     }
     free(pilot);
     const size_t bins = v->partition ? partition_bins(v->partition) : 1;
@@ -371,8 +364,8 @@ bool survey_make(struct subject *s, struct err *err)
      * of a whole, and so of every part of it. */
     const double tolerance = mass_tolerance + v->rounding / 400;
     if (!v->partition || !v->mass || !v->count ||
-        !partition_integrate(v->partition, pdf_at, s, 1, tolerance, mass_budget,
-                             v->mass) ||
+        !partition_integrate(v->partition, pdf_at, s, 1, tolerance,
+                             subject_batch(s), mass_budget, v->mass) ||
         !samples_draw(s) || !look_again(s, tolerance)) {
         survey_clear(v);
         return err_set(err, "out of memory");
