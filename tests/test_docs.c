@@ -6,8 +6,10 @@
  * the sources, with what is built already beside them; FRESH=1 leaves that
  * out, as for somebody who has just cloned.
  */
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "tests/close.h"
 #include "tests/shell.h"
@@ -95,7 +97,7 @@ static void sources_are_copied(void)
              "cp -r obj/$f $to/obj/; done && cp *.a $to/ && "
              "cp -r scenes $to/ && cp -r bin $to/ && "
              "rm -rf $to/bin/tests && cp $ROOT/build/.setup-* "
-             "$T/clone/build/; }");
+             "$T/clone/build/ 2>/dev/null; :; }");
 }
 
 /* From a clone to a validated BSDF of one's own, and a figure. */
@@ -110,12 +112,19 @@ static void the_readmes_path_leads_there(void **state)
          "matt.so");
 }
 
+/* With the programs of the copy, which are made again. */
 static void a_model_is_added_as_bsdfs_readme_says(void **state)
 {
     (void)state;
+    char *path = strdup(getenv("PATH"));
+    assert_non_null(path);
     setenv("CFLAGS", "-O0", 1); /* what is new is little, and built sooner */
+    does("printf %s \"$T/clone/${BIN#$ROOT/}:$PATH\"");
+    setenv("PATH", output, 1);
     replays("bsdf/README.md", "Adding a model", "clone");
+    setenv("PATH", path, 1);
     unsetenv("CFLAGS");
+    free(path);
 }
 
 static void a_table_is_added_as_bsdfs_readme_says(void **state)
@@ -182,7 +191,7 @@ static void manual_pages_are_made_of_the_help(void **state)
          "grep -qi \"^.SH \\\"*$h\" $T/$n.1 || { echo $n: $h; exit 1; }; "
          "done; "
          "$BIN/$n --help | grep -o -e '--[a-z][a-z-]*' | sort -u | "
-         "sed 's/-/\\\\\\\\-/g' | while read -r o; do "
+         "sed 's/-/\\\\-/g' | while read -r o; do "
          "grep -qFe \"$o\" $T/$n.1 || { echo $n: $o; exit 1; }; done || "
          "exit 1; done");
     if (sh("command -v man") == 0)
@@ -223,7 +232,7 @@ static void the_shell_completes_what_there_is(void **state)
     completes("bsdf-info al", "albedo\n");
     completes("bsdf-info -n 4 ior Fe/", "Fe/Johnson\n");
     completes("bsdf-info ior Fe --as m", "mitsuba\n");
-    completes("bsdf-info ior --rgb=fi", "fit\n");
+    completes("bsdf-info ior --rgb=av", "average\n");
     completes("bsdf-render --ad", "--adaptive=\n");
     completes("bsdf-validate --nm ", "\n");
 }
