@@ -389,7 +389,7 @@ $(B)/obj/%.h.alone: %.h Makefile
 .PHONY: valgrind
 valgrind: test ## the tests that malformed input goes through, under valgrind
 	@command -v valgrind >/dev/null || { echo "valgrind is missing" >&2; exit 2; }
-	@$(MAKE) --no-print-directory run-tests RUN='$(filter test_spec test_ior test_cli,$(TESTS))' \
+	@$(MAKE) --no-print-directory run-tests RUN='$(filter test_spec test_ior test_cli test_film,$(TESTS))' \
 	    WRAP='valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite,indirect'
 
 # By file as well with V=1.
@@ -474,8 +474,11 @@ MITSUBA_PYTHON := build/venv-mitsuba/bin/python
 HAS_LLVM       := $(MITSUBA_PYTHON) -c 'import drjit, sys; \
                   sys.exit(drjit.detail.llvm_version()[0] < 17)' >/dev/null 2>&1
 
-.PHONY: peer-mitsuba
-peer-mitsuba: all ## validate the BSDFs of Mitsuba 3, and why some fail (Python, mitsuba from PyPI)
+.PHONY: peer-mitsuba mitsuba
+peer-mitsuba: all mitsuba ## validate the BSDFs of Mitsuba 3, and why some fail (Python, mitsuba from PyPI)
+	python3 tests/peer_mitsuba.py $(BIN)/bsdf-validate $(MITSUBA_PYTHON) $(ONLY)
+
+mitsuba: setup
 	@[ -x $(MITSUBA_PYTHON) ] || python3 -m venv build/venv-mitsuba
 	@$(MITSUBA_PYTHON) -c 'import mitsuba, numpy' 2>/dev/null || \
 	    $(MITSUBA_PYTHON) -m pip install -q $(MITSUBA) numpy
@@ -483,7 +486,14 @@ peer-mitsuba: all ## validate the BSDFs of Mitsuba 3, and why some fail (Python,
 	    if [ "$$(id -u)" = 0 ]; then as=; else as=sudo; fi; \
 	    $$as apt-get update -qq && $$as apt-get install -y -qq \
 	        --no-install-recommends libllvm19 >/dev/null; }
-	python3 tests/peer_mitsuba.py $(BIN)/bsdf-validate $(MITSUBA_PYTHON) $(ONLY)
+
+.PHONY: peer-mitsuba-render
+peer-mitsuba-render: all mitsuba ## data/scenes/ here and by Mitsuba 3: the same pictures? (Python, mitsuba from PyPI)
+	python3 tests/peer_render.py $(BIN)/bsdf-render $(MITSUBA_PYTHON) build/peer-render $(ONLY)
+
+.PHONY: course
+course: all ## the course's scenes against pictures that others made (BSDF_SHARED=../shared)
+	sh tests/course.sh $(BIN) $${BSDF_SHARED:-../shared} build/course
 
 # -- order --------------------------------------------------------------------
 

@@ -458,8 +458,8 @@ static int draw(struct request *r, const char *command, struct err *err)
         output_name(r->arg[0], name, sizeof name);
         r->output[r->outputs++] = name;
     }
-    if (ok && !r->quiet)
-        output_scene(stderr, r->arg[0], s);
+    for (int i = 0; ok && i < r->outputs; i++)
+        ok = output_can(r->output[i], err);
     if (ok) {
         const struct sigaction once = { .sa_handler = stop_soon,
                                         .sa_flags = (int)SA_RESETHAND };
@@ -468,8 +468,10 @@ static int draw(struct request *r, const char *command, struct err *err)
         r->render.progress = !r->quiet && isatty(STDERR_FILENO);
         ok = render(s, &r->render, &made, err);
     }
-    if (ok && !r->quiet)
+    if (ok && !r->quiet) {
+        output_scene(stderr, r->arg[0], s);
         output_summary(stderr, &made, &r->render);
+    }
     ok = ok && save(r, &made, command, err);
     if (ok && made.bad > 0)
         fprintf(stderr,

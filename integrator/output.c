@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "bsdf/cli.h"
+#include "bsdf/outfile.h"
 
 static bool ends(const char *path, const char *with)
 {
@@ -19,6 +20,15 @@ bool output_check(const char *path, struct err *err)
     return ends(path, ".png") || ends(path, ".exr") ||
            err_set(err, "-f %.200s: expected a name that ends in .png or .exr",
                    path);
+}
+
+bool output_can(const char *path, struct err *err)
+{
+    struct outfile out;
+    const bool can = outfile_open(&out, path, err);
+    if (can)
+        outfile_abandon(&out);
+    return can;
 }
 
 void output_name(const char *scene, char *name, size_t size)

@@ -16,6 +16,10 @@ struct output_settings {
 /** Whether a name ends in .png or .exr. */
 bool output_check(const char *path, struct err *err);
 
+/** Whether a file can be made there, before hours are spent on what goes into
+ * it. */
+bool output_can(const char *path, struct err *err);
+
 /** The scene's name in the present folder, with .png for its ending. */
 void output_name(const char *scene, char *name, size_t size);
 
