@@ -227,7 +227,7 @@ static void alpha_panel(struct figure *fig, double bottom, struct chart_axis y)
                        .curves = CUTS };
     for (int i = 0; i < CUTS; i++) {
         curve[i] = (struct chart_curve){
-            .block = 3 + i, .x = "$1", .y = "$2", .line = 4 + i
+            .block = 3 + i, .x = "$1", .y = "$2", .line = 5 + i
         };
         snprintf(curve[i].text, sizeof curve[i].text, "θₒ = %g°",
                  tilt_of(cut[i]));
@@ -289,7 +289,7 @@ static void script_write(struct figure *fig, const struct loss *l)
         key[bands + i].text[0] = '\0';
     }
     for (int i = 0; l->rough && i < CUTS; i++) {
-        key[n] = (struct chart_curve){ .line = 4 + i };
+        key[n] = (struct chart_curve){ .line = 5 + i };
         snprintf(key[n++].text, sizeof key[0].text, "θₒ = %g°",
                  tilt_of(cut[i]));
     }
