@@ -133,7 +133,7 @@ static bool interface_of(struct interface *f, const struct bsdf *b,
                          struct err *err)
 {
     const struct bands *bands = bsdf_bands(b);
-    struct spectrum eta, k;
+    struct spectrum eta = { { 0 } }, k = { { 0 } };
     bool same = true;
     if (!bsdf_index(b, &eta, &k))
         return err_set(err,
@@ -309,7 +309,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
                 struct err *err)
 {
     struct figure fig;
-    struct interface f;
+    struct interface f = { .sides = 0 };
     if (!interface_of(&f, r->bsdf[0], err) ||
         !figure_open(&fig, r->output, &r->look, err))
         return false;
