@@ -113,7 +113,7 @@ static void date_fix(char *bytes, size_t size)
     static const char key[] = "/CreationDate (D:", date[] = "20000101000000";
     char *at = memmem(bytes, size, key, strlen(key));
     if (at && (size_t)(bytes + size - at) >= strlen(key) + strlen(date))
-        memcpy(at + strlen(key), date, strlen(date));
+        memcpy(at + sizeof key - 1, date, sizeof date - 1);
 }
 
 bool form_finish(const struct form *form, const char *path, struct err *err)

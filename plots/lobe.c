@@ -232,8 +232,10 @@ static bool run(const struct plot_request *r, struct figure_made *made,
     struct figure fig;
     struct trace *t = calloc(POLAR_TRACES_MAX, sizeof *t);
     int n = 0;
-    bool ok = t || err_set(err, "out of memory");
-    if (ok && r->bsdfs * r->wos > POLAR_TRACES_MAX)
+    bool ok = true;
+    if (!t)
+        return err_set(err, "out of memory");
+    if (r->bsdfs * r->wos > POLAR_TRACES_MAX)
         ok = err_set(err,
                      "lobe: %d models from %d directions; expected at most %d "
                      "curves",
