@@ -301,7 +301,10 @@ static void script_write(struct figure *fig, const struct loss *l)
     const struct chart_axis y =
         chart_axis(0, fmax(l->most, 1), 5, "albedo", "1");
     bands_print(bsdf_bands(l->bsdf), names, sizeof names);
-    snprintf(below, sizeof below, "ωₒ at φ = %.6g°;  %s", l->phi_deg, names);
+    snprintf(below, sizeof below, "ωₒ at φ = %.6g°;  %s%s", l->phi_deg, names,
+             strstr(bsdf_spec(l->bsdf), "alpha_u=")
+                 ? ";  α the same along x and y"
+                 : "");
     snprintf(note, sizeof note,
              "circles: by quadrature; lines%s: mean weights of %llu samples, ± "
              "%.1g%s",

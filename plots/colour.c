@@ -324,7 +324,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
                      "Colour of the reflectance under D65 against the angle of "
                      "incidence, of the whole spectrum and by each way to "
                      "three pairs of eta and k; CIEDE2000 from the former. "
-                     "Pages: ");
+                     "Pages:");
         ok = figure_draw(&fig, made, err);
     }
     free(s);

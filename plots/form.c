@@ -17,10 +17,10 @@ struct terminal {
 
 static const struct terminal terminals[] = {
     { { ".svg", false, "image pixels", "%.10g", "°" },
-      "svg size %.6g,%.6g noenhanced font \"sans-serif,12\" fontscale %.6g "
-      "linewidth %.6g background \"#ffffff\"",
+      "svg size %.6g,%.6g noenhanced font \"sans-serif,%.6g\" linewidth %.6g "
+      "background \"#ffffff\"",
       1,
-      1,
+      12, /* its scale of fonts would leave tics and their labels behind */
       1 },
     { { ".pdf", false, "image", "%.10g", "°" },
       "pdfcairo size %.6g,%.6g noenhanced font \"sans-serif,12\" fontscale "
@@ -74,6 +74,11 @@ void form_terminal(FILE *script, const struct form *form, double width,
     if (form->tex) /* 12 pixels are 9 pt */
         fprintf(script, " header \"\\\\fontsize{%.4g}{%.4g}\\\\selectfont\"",
                 9 * scale, 10.8 * scale);
+}
+
+double form_font(const struct form *form, double pixels, double scale)
+{
+    return form == &terminals[0].form ? pixels * scale : pixels;
 }
 
 /* A whole file, a 0 behind it; NULL and the reason. */

@@ -23,7 +23,7 @@
 #include "plots/kinds.h"
 #include "plots/table.h"
 
-enum { STEPS = 720, COLUMNS_MAX = BANDS_MAX };
+enum { STEPS = 360, COLUMNS_MAX = BANDS_MAX };
 
 /* An interface as light of one column meets it. */
 struct side {

@@ -106,7 +106,7 @@ static void the_readmes_path_leads_there(void **state)
     (void)state;
     sources_are_copied();
     unsetenv("CPATH");
-    replays("README.md", "tour|Your own BSDF|Reports", "clone");
+    replays("README.md", "tour|Your own BSDF|Reports|Pictures", "clone");
     setenv("CPATH", getenv("ROOT"), 1);
     does("cd $T/clone/build/tour && ls lobe.svg histogram.svg gold.html "
          "matt.so");
