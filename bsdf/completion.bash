@@ -14,7 +14,7 @@
 # where it takes none.
 _bsdf_argument() {
     "$1" --help 2>/dev/null | awk -v option="$2" '
-        /^ *-/ {
+        /^ +-/ {
             for (i = 1; i <= NF && $i ~ /^-/; i++) {
                 split($i, part, "[=,]")
                 if (part[1] == option)
@@ -159,7 +159,7 @@ _bsdf() {
         reply=$(_bsdf_values "$program" "$previous" "$taken" "$current")
     elif [[ $current == -* ]]; then
         reply=$("$program" --help 2>/dev/null |
-            sed -n 's/^ *\(-.,\)\{0,1\} *\(--[a-z-]*=\{0,1\}\).*/\2/p')
+            sed -n 's/^  *\(-.,\)\{0,1\} *\(--[a-z-]*=\{0,1\}\).*/\2/p')
     else
         reply=$(_bsdf_operands "$program" "$current" "${operands[@]}")
     fi
