@@ -63,10 +63,10 @@ FOLDERS  := $(patsubst %/,%,$(wildcard bsdf/ validate/ plots/ integrator/))
 SOURCES  := $(foreach d,$(FOLDERS),$(wildcard $(d)/*.c))
 HEADERS  := $(foreach d,$(FOLDERS) tests,$(wildcard $(d)/*.h))
 TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
-# What `make test` runs.  Statistics over thousands of cases ask nothing new of
-# memory, and sanitizers make them take minutes.
-RUN      := $(if $(filter sanitize,$(config)),\
-              $(filter-out test_calibration test_mutants,$(TESTS)),$(TESTS))
+# What `make test` runs.  Statistics over thousands of cases, and what pages say,
+# ask nothing new of memory, and sanitizers make them take minutes.
+RUN      := $(if $(filter sanitize,$(config)),$(filter-out \
+              test_calibration test_docs test_mutants,$(TESTS)),$(TESTS))
 # Programs of tests/ that `make test` does not run, each with its own target.
 LONG     := $(wildcard $(patsubst %,tests/%.c,bench mutants baselines calibrate))
 HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
@@ -385,6 +385,10 @@ headers: $(HEADERS:%=$(B)/obj/%.alone)
 $(B)/obj/%.h.alone: %.h Makefile
 	@mkdir -p $(@D)
 	@printf '#include "%s"\n' $< | $(COMPILE) -fsyntax-only -x c - && touch $@
+
+.PHONY: check-clone
+check-clone: all $(B)/bin/tests/test_docs ## what the pages say, from sources of which nothing is built yet
+	@FRESH=1 BIN=$(BIN) $(B)/bin/tests/test_docs
 
 .PHONY: valgrind
 valgrind: test ## the tests that malformed input goes through, under valgrind
