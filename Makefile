@@ -74,9 +74,11 @@ HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
 # Loops over lanes, which see more of the registers with -O3.
 ifeq ($(config),release)
 LANED    := $(patsubst %,$(B)/obj/%.o,bsdf/diffuse bsdf/facets bsdf/rng \
-              bsdf/roughconductor bsdf/roughdielectric \
-              tests/bench validate/partition validate/quadrature \
-              validate/sphere validate/subject validate/survey)
+              bsdf/roughconductor bsdf/roughdielectric integrator/camera \
+              integrator/light integrator/path integrator/sampler \
+              integrator/trace tests/bench validate/partition \
+              validate/quadrature validate/sphere validate/subject \
+              validate/survey)
 $(LANED): FLAGS += -O3
 endif
 
