@@ -68,15 +68,17 @@ TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 RUN      := $(if $(filter sanitize,$(config)),$(filter-out \
               test_calibration test_docs test_mutants,$(TESTS)),$(TESTS))
 # Programs of tests/ that `make test` does not run, each with its own target.
-LONG     := $(wildcard $(patsubst %,tests/%.c,bench mutants baselines calibrate))
+LONG     := $(wildcard $(patsubst %,tests/%.c,bench bench_render mutants baselines calibrate))
 HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
 
 # Loops over lanes, which see more of the registers with -O3.
 ifeq ($(config),release)
 LANED    := $(patsubst %,$(B)/obj/%.o,bsdf/diffuse bsdf/facets bsdf/rng \
-              bsdf/roughconductor bsdf/roughdielectric \
-              tests/bench validate/partition validate/quadrature \
-              validate/sphere validate/subject validate/survey)
+              bsdf/roughconductor bsdf/roughdielectric integrator/camera \
+              integrator/light integrator/path integrator/sampler \
+              integrator/trace tests/bench validate/partition \
+              validate/quadrature validate/sphere validate/subject \
+              validate/survey)
 $(LANED): FLAGS += -O3
 endif
 
@@ -433,9 +435,10 @@ coverage: ## run the tests and count the lines that they reach, by folder (gcc)
 	    awk "$$COVERAGE"; exit $$status
 
 .PHONY: bench
-bench: tools-found ## what calls, a chi-square and bin masses cost, as ratios and in ns
-	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/bench
+bench: tools-found ## what calls, a chi-square, bin masses and a picture cost, as ratios
+	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/bench build/bin/tests/bench_render
 	@build/bin/tests/bench
+	@build/bin/tests/bench_render
 
 # The seed is 1 and is printed; `make mutants SEED=2` takes another.
 SEED ?= 1

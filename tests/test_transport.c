@@ -510,15 +510,24 @@ static void threads_do_not_matter(void **state)
 static void spread_samples_fill_boxes(void **state)
 {
     enum { BITS = 8, N = 1 << BITS };
-    struct sampler *s = malloc(sizeof *s);
+    const struct sampler s = { SAMPLER_LD, 3 };
+    const uint64_t pixel[] = { 12345, 777 };
     (void)state;
-    assert_non_null(s);
-    sampler_start(s, SAMPLER_LD, 3, 12345);
     for (uint64_t row = 60; row < 68; row++) {
         struct vec3 u[N];
-        for (uint64_t i = 0; i < N; i++) {
-            sampler_go(s, i);
-            u[i] = sampler_row(s, row);
+        for (uint32_t from = 0; from < N; from += WAVE / 2) {
+            uint16_t piece[WAVE];
+            uint32_t sample[WAVE];
+            struct vecs out;
+            const struct sampler_lanes lanes = { 2, pixel, WAVE, piece,
+                                                 sample };
+            for (uint32_t i = 0; i < WAVE; i++) {
+                piece[i] = i % 2;
+                sample[i] = from + i / 2;
+            }
+            sampler_row(&s, row, &lanes, &out);
+            for (size_t i = 0; i < WAVE; i += 2)
+                u[sample[i]] = vecs_at(&out, i + row % 2);
         }
         for (int wide = 0; wide <= BITS + 1; wide++) {
             char hit[N] = { 0 };
@@ -533,7 +542,6 @@ static void spread_samples_fill_boxes(void **state)
                 assert_int_equal(hit[i], 1);
         }
     }
-    free(s);
 }
 
 /* The same mean, and less noise than the samples' own spread says. */
