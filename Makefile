@@ -63,10 +63,10 @@ FOLDERS  := $(patsubst %/,%,$(wildcard bsdf/ validate/ plots/ integrator/))
 SOURCES  := $(foreach d,$(FOLDERS),$(wildcard $(d)/*.c))
 HEADERS  := $(foreach d,$(FOLDERS) tests,$(wildcard $(d)/*.h))
 TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
-# What `make test` runs.  Statistics over thousands of cases, and what pages say,
-# ask nothing new of memory, and sanitizers make them take minutes.
-RUN      := $(if $(filter sanitize,$(config)),$(filter-out \
-              test_calibration test_docs test_mutants,$(TESTS)),$(TESTS))
+# What `make test` runs.  Statistics over thousands of cases, pictures, and what
+# pages say ask nothing new of memory, and sanitizers make them take minutes.
+RUN      := $(if $(filter sanitize,$(config)),$(filter-out test_calibration \
+              test_depth test_docs test_mutants test_writeup,$(TESTS)),$(TESTS))
 # Programs of tests/ that `make test` does not run, each with its own target.
 LONG     := $(wildcard $(patsubst %,tests/%.c,bench bench_render mutants baselines calibrate))
 HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
@@ -270,6 +270,13 @@ endef
 gallery: all ## draw the pictures of the README and of validate/README.md again
 	$(call draw,gallery,plots/GALLERY.md)
 	$(call draw,pictures,validate/TUTORIAL.md validate/README.md)
+
+# Its own rules know what has changed; it goes on where it was interrupted.
+QUALITY ?= draft
+.PHONY: writeup
+writeup: setup ## a course's write-up, every figure and number made anew, into build/writeup/ (QUALITY=draft|final, COURSE_SCENES=DIR)
+	@$(MAKE) --no-print-directory -j$(JOBS) all
+	@$(MAKE) --no-print-directory -j$(JOBS) -f plots/writeup/writeup.mk BIN=$(BIN) QUALITY=$(QUALITY)
 
 # -- installing ---------------------------------------------------------------
 # What is installed looks for its tables below PREFIX: the one file that knows

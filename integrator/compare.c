@@ -100,9 +100,11 @@ static void find_bad(const struct film *a, const struct film *b,
         }
 }
 
-static double ratio(const struct film *a, const struct film *b)
+/* Of the luminance and of its variance, B over A, where both are finite. */
+static void find_ratios(const struct film *a, const struct film *b,
+                        struct comparison *r)
 {
-    double sum_a = 0, sum_b = 0;
+    double sum_a = 0, sum_b = 0, variance_a = 0, variance_b = 0;
     for (size_t i = 0; i < (size_t)a->width * (size_t)a->height; i++) {
         const double la = film_luminance(a->pixel[i].mean);
         const double lb = film_luminance(b->pixel[i].mean);
@@ -110,8 +112,11 @@ static double ratio(const struct film *a, const struct film *b)
             continue;
         sum_a += la;
         sum_b += lb;
+        variance_a += (double)a->pixel[i].luminance_variance;
+        variance_b += (double)b->pixel[i].luminance_variance;
     }
-    return sum_b / sum_a;
+    r->ratio = sum_b / sum_a;
+    r->variance_ratio = variance_b / variance_a;
 }
 
 /* -- one test -------------------------------------------------------------- */
@@ -454,7 +459,7 @@ static void conclude(const struct tests *t, const struct film *a,
     r->height = w->height;
     r->channel = w->channel;
     r->z = z_of(w);
-    r->ratio = ratio(a, b);
+    find_ratios(a, b, r);
     find_bad(a, b, r);
     if (r->bad) {
         r->p = pvalue_impossible;
@@ -520,9 +525,22 @@ void compare_print(FILE *out, const struct comparison *c)
                 c->carriers, carriers_enough);
     fprintf(out,
             "mean luminance, second over first: %.5g\n"
+            "variance of a pixel, second over first: %.4g\n"
             "found 99 times of 100: a bias of %.2g %% everywhere, of %.2g %% "
             "in a typical block\n",
-            c->ratio, 100 * c->bias, 100 * c->block_bias);
+            c->ratio, c->variance_ratio, 100 * c->bias, 100 * c->block_bias);
+}
+
+void compare_print_numbers(FILE *out, const struct comparison *c)
+{
+    fprintf(out, "same\t%d\ntests\t%d\ndifferent\t%d\nblock\t%d\n", c->same,
+            c->tests, c->different, c->block);
+    fprintf(out, "p\t%.9g\nsignificance\t%.9g\nz\t%.9g\n", c->p,
+            c->significance, c->z);
+    fprintf(out,
+            "luminance_ratio\t%.9g\nvariance_ratio\t%.9g\nbias\t%.9g\n"
+            "block_bias\t%.9g\n",
+            c->ratio, c->variance_ratio, c->bias, c->block_bias);
 }
 
 static unsigned char shade(double x)

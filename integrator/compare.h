@@ -68,6 +68,7 @@ struct comparison {
     double z; /* there: B less A in standard errors; infinite without spread */
 
     double ratio; /* of the pictures' mean luminances, B over A; NaN of none */
+    double variance_ratio; /* of a pixel's luminance, on average; likewise */
 
     /* The smallest share by which B could be brighter than A throughout, and
      * would have been called different 99 times of 100; and by which a typical
@@ -91,6 +92,9 @@ bool compare_films(const struct film *a, const struct film *b,
 
 /** What came out, in a few lines. */
 void compare_print(FILE *out, const struct comparison *c);
+
+/** The same as lines of a name, a tab and a number. */
+void compare_print_numbers(FILE *out, const struct comparison *c);
 
 /** A map of z as PNG, of the channel that differs most: blue where B is darker,
  * white where equal, red where brighter; full colour at 6 standard errors. */

@@ -16,6 +16,7 @@
 #include "integrator/compat.h"
 #include "integrator/environment.h"
 #include "integrator/load.h"
+#include "integrator/measure.h"
 #include "integrator/output.h"
 #include "integrator/render.h"
 
@@ -34,6 +35,8 @@ enum {
     OPT_EXPOSURE,
     OPT_QUIET,
     OPT_COMPARE,
+    OPT_MEASURE,
+    OPT_NUMBERS,
     OPT_MAP,
     OPT_BLOCK,
     OPT_SIGNIFICANCE
@@ -53,14 +56,14 @@ struct request {
     double exposure;
     const char *arg[2];
     int args;
-    bool compare;
+    bool compare, measure, numbers;
     struct compare_options comparing;
     const char *map;
 };
 
 const char *argp_program_version = "bsdf-render " BSDF_VERSION;
 static const char about[] =
-    "Renders a scene by path tracing, or compares two pictures."
+    "Renders a scene by path tracing, compares two pictures, measures one."
     "\vA SCENE is Mitsuba 3's XML or a course's COLLADA (.dae, .dae.xz).  "
     "Depth counts bounces: 0 is what emits, 1 direct light.  An EXR holds "
     "means, variances, numbers of samples, depth, normals and albedo.  Exit "
@@ -127,6 +130,12 @@ static const struct argp_option options[] = {
       "two EXRs: are they estimates of one picture?  Two PNGs: how alike are "
       "their blocks?",
       0 },
+    { "measure", OPT_MEASURE, 0, 0,
+      "an EXR, or of it the part -p: mean, noise, samples, as lines of a name "
+      "and a number",
+      0 },
+    { "numbers", OPT_NUMBERS, 0, 0,
+      "of a comparison of two EXRs, as such lines too", 0 },
     { "map", OPT_MAP, "FILE.png", 0, "of the differences in standard errors",
       0 },
     { "block", OPT_BLOCK, "N", 0, "side of a block in pixels; 20", 0 },
@@ -345,6 +354,12 @@ static error_t option(int key, char *arg, struct argp_state *state)
     case OPT_COMPARE:
         r->compare = true;
         break;
+    case OPT_MEASURE:
+        r->measure = true;
+        break;
+    case OPT_NUMBERS:
+        r->numbers = true;
+        break;
     case OPT_MAP:
         r->map = arg;
         break;
@@ -517,15 +532,28 @@ static int compare(const struct request *r, struct err *err)
     bool ok = a && b &&
               compare_films(a, b, &r->comparing, &c, r->map ? &map : NULL, err);
     if (ok)
-        compare_print(stdout, &c);
+        (r->numbers ? compare_print_numbers : compare_print)(stdout, &c);
     if (ok && r->map)
         ok = compare_write_map(map, r->map, err);
-    if (ok && r->map)
+    if (ok && r->map && !r->numbers)
         puts(r->map);
     film_free(a);
     film_free(b);
     film_free(map);
     return !ok ? EXIT_REQUEST : c.same ? EXIT_SOUND : EXIT_UNSOUND;
+}
+
+static int measure(const struct request *r, struct err *err)
+{
+    const struct render_settings *p = &r->render;
+    struct measure m;
+    struct film *f = film_read_exr(r->arg[0], err);
+    const bool ok =
+        f && measure_film(f, p->x, p->y, p->width, p->height, &m, err);
+    if (ok)
+        measure_print(stdout, &m);
+    film_free(f);
+    return ok ? EXIT_SOUND : EXIT_REQUEST;
 }
 
 /* The command line, to be read by people. */
@@ -551,6 +579,12 @@ static int run(struct request *r, const char *command, struct err *err)
     }
     if (r->compare)
         return compare(r, err);
+    if (r->measure && r->args != 1) {
+        err_set(err, "--measure: expected one picture, an EXR");
+        return EXIT_REQUEST;
+    }
+    if (r->measure)
+        return measure(r, err);
     if (r->args != 1) {
         err_set(err,
                 r->args ? "\"%.200s\" is one argument too many"
@@ -581,7 +615,8 @@ int main(int argc, char **argv)
     char *command = command_of(argc, argv);
     gsl_set_error_handler_off();
     argp_err_exit_status = EXIT_REQUEST;
-    argp_parse(&(struct argp){ options, option, "SCENE\n--compare A.exr B.exr",
+    argp_parse(&(struct argp){ options, option,
+                               "SCENE\n--compare A.exr B.exr\n--measure A.exr",
                                about, 0, 0, 0 },
                argc, argv, 0, NULL, &r);
     int status = run(&r, command ? command : "bsdf-render", &err);

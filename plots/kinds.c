@@ -4,11 +4,11 @@
 #include "bsdf/cli.h"
 
 const struct plot *const plots[] = {
-    &plot_lobe,     &plot_lobe3d, &plot_histogram,
-    &plot_slice,    &plot_albedo, &plot_convergence,
-    &plot_compare,  &plot_ndf,    &plot_fresnel,
-    &plot_ior,      &plot_colour, &plot_kill_matrix,
-    &plot_p_values, &plot_report, NULL,
+    &plot_lobe,     &plot_lobe3d,      &plot_histogram, &plot_slice,
+    &plot_albedo,   &plot_convergence, &plot_compare,   &plot_ndf,
+    &plot_fresnel,  &plot_ior,         &plot_colour,    &plot_kill_matrix,
+    &plot_p_values, &plot_series,      &plot_report,    &plot_writeup,
+    NULL,
 };
 
 void plot_caption(struct figure *fig, const struct plot *plot,

@@ -63,7 +63,7 @@ struct plot {
 extern const struct plot plot_lobe, plot_lobe3d, plot_histogram, plot_slice,
     plot_albedo, plot_fresnel, plot_ior, plot_ndf, plot_colour,
     plot_convergence, plot_kill_matrix, plot_p_values, plot_compare,
-    plot_report;
+    plot_series, plot_report, plot_writeup;
 
 /** All of them; the last is NULL. */
 extern const struct plot *const plots[];

@@ -61,8 +61,8 @@ static const struct argp_option options[] = {
     { "zoom", OPT_ZOOM, "half|disk", 0,
       "a histogram over half vectors, or over the projected disk", 0 },
     { "output", 'o', "FILE", 0,
-      "ends in .svg, .pdf, .png or .tex, for a report in .html; KIND.svg if "
-      "not given",
+      "ends in .svg, .pdf, .png or .tex, for a report in .html, for a writeup "
+      "in .html or .tex; KIND.svg if not given",
       0 },
     { "width", OPT_WIDTH, "MM", 0,
       "of the picture, 40 to 2000; 211.67, which is 800 pixels of an SVG", 0 },

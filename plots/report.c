@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "bsdf/cli.h"
-#include "bsdf/utf8.h"
+#include "plots/html.h"
 #include "plots/kinds.h"
 #include "validate/foreign.h"
 #include "validate/recorded.h"
@@ -41,46 +41,13 @@ struct page {
 
 /* -- text ------------------------------------------------------------------ */
 
-static void html(FILE *out, const char *bytes)
-{
-    char *plain = utf8_plain(bytes);
-    for (const char *p = plain ? plain : ""; *p; p++)
-        switch (*p) {
-        case '&':
-            fputs("&amp;", out);
-            break;
-        case '<':
-            fputs("&lt;", out);
-            break;
-        case '>':
-            fputs("&gt;", out);
-            break;
-        case '"':
-            fputs("&quot;", out);
-            break;
-        case '\'':
-            fputs("&#39;", out);
-            break;
-        default:
-            fputc(*p, out);
-        }
-    free(plain);
-}
-
-static void element(FILE *out, const char *tag, const char *bytes)
-{
-    fprintf(out, "<%s>", tag);
-    html(out, bytes);
-    fprintf(out, "</%s>", tag);
-}
-
 /* A spec, which may go on in the next line behind its punctuation. */
 static void spec_html(FILE *out, const char *spec)
 {
     while (*spec) {
         const size_t n = strcspn(spec, ":,("), all = n + (spec[n] != '\0');
         char *part = strndup(spec, all);
-        html(out, part ? part : "");
+        html_text(out, part ? part : "");
         free(part);
         spec += all;
         if (*spec)
@@ -94,14 +61,14 @@ static void shell_word(FILE *out, const char *word)
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRST"
                                 "UVWXYZ0123456789_-./,:=+@%";
     if (*word && strspn(word, plain) == strlen(word)) {
-        html(out, word);
+        html_text(out, word);
         return;
     }
     fputs("&#39;", out);
     for (const char *p = word; *p;) {
         const size_t n = strcspn(p, "'");
         char *run = strndup(p, n);
-        html(out, run ? run : "");
+        html_text(out, run ? run : "");
         free(run);
         p += n;
         if (*p == '\'') {
@@ -196,14 +163,6 @@ static const char *class_of(const struct verdict *v)
 /* -- head ------------------------------------------------------------------ */
 
 static const char style[] =
-    ":root{color-scheme:light}"
-    "*{box-sizing:border-box}"
-    "body{margin:0 auto;padding:1rem;max-width:85rem;background:#fff;"
-    "color:#1a1a1a;font:16px/1.5 system-ui,sans-serif;overflow-wrap:anywhere}"
-    "h1{font-size:1.5rem;margin:.2rem 0 .8rem}"
-    "h2{font-size:1.25rem;margin:2.2rem 0 .6rem;padding-bottom:.2rem;"
-    "border-bottom:1px solid #ccc}"
-    "h3{font-size:1.05rem;margin:1.6rem 0 .5rem}"
     "h4{font-size:1rem;margin:0 0 .3rem}"
     "h3,.spec,pre,code{font-family:ui-monospace,monospace}"
     "p{margin:.4rem 0}"
@@ -213,13 +172,6 @@ static const char style[] =
     ".verdict.bad{background:#fdeadd;border-color:#d55e00;color:#8a3200}"
     "dl{display:grid;grid-template-columns:max-content 1fr;gap:.1rem 1rem;"
     "margin:0}dt{color:#555}dd{margin:0}"
-    ".scroll{overflow-x:auto;max-width:100%;border:1px solid #ddd;"
-    "margin:.5rem 0}"
-    "table{border-collapse:collapse;font-size:.85rem;width:100%}"
-    "th,td{text-align:left;padding:.3rem .55rem;border-bottom:1px solid "
-    "#e4e4e4;"
-    "vertical-align:top;white-space:nowrap}"
-    "thead th{background:#f4f4f4;position:sticky;top:0}"
     ".n{text-align:right;font-variant-numeric:tabular-nums}"
     "td.wide{white-space:normal;min-width:16rem}"
     "th.spec{font-weight:400;white-space:normal;min-width:10.5rem;"
@@ -231,16 +183,11 @@ static const char style[] =
     "td small{display:block;font-weight:400}"
     "article{border-left:.3rem solid #d55e00;padding:.2rem 0 .2rem .8rem;"
     "margin:.8rem 0 1.2rem}"
-    "pre{white-space:pre-wrap;background:#f4f4f4;border:1px solid #ddd;"
-    "padding:.5rem .7rem;margin:.3rem 0;font-size:.82rem;user-select:all}"
     ".diagnosis{background:#fff7d6;padding:.3rem .6rem}"
     ".pictures{display:grid;gap:1rem;"
     "grid-template-columns:repeat(auto-fit,minmax(min(100%,36rem),1fr))}"
-    "figure{margin:0;min-width:0}figure svg{display:block;width:100%;"
+    "figure svg{display:block;width:100%;"
     "height:auto;min-width:560px}"
-    "figcaption{font-size:.85rem;color:#444}"
-    "details{margin:.4rem 0;border:1px solid #ddd;padding:.3rem .7rem}"
-    "summary{cursor:pointer;overflow-wrap:anywhere}"
     "@media(max-width:40rem){body{padding:.6rem}dl{grid-template-columns:1fr}"
     "dd{margin-bottom:.4rem}}"
     "@media print{body{max-width:none;font-size:11px}.scroll{overflow:visible;"
@@ -254,8 +201,8 @@ static const char style[] =
 
 static void term(FILE *out, const char *what, const char *text)
 {
-    element(out, "dt", what);
-    element(out, "dd", text);
+    html_element(out, "dt", what);
+    html_element(out, "dd", text);
     fputc('\n', out);
 }
 
@@ -287,7 +234,7 @@ static void settings(const struct page *p)
     fputs("<dt>skipped checks</dt><dd>", out);
     for (size_t i = 0; i < r->skips; i++) {
         fputs(i ? ", " : "", out);
-        html(out, r->skip[i]);
+        html_text(out, r->skip[i]);
     }
     fputs(r->skips ? "</dd>\n" : "none</dd>\n", out);
     if (r->ior_path)
@@ -301,18 +248,14 @@ static void head(const struct page *p)
     FILE *out = p->out;
     const struct recorded *r = p->r;
     const bool bad = r->failed > 0;
+    char title[80];
+    snprintf(title, sizeof title, "%s: %zu passed, %zu failed",
+             bad ? "Not sound" : "Sound", r->passed, r->failed);
+    html_head(out, title, style);
     fprintf(out,
-            "<!DOCTYPE html>\n"
-            "<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n"
-            "<head><meta charset=\"utf-8\"/>\n"
-            "<meta name=\"viewport\" content=\"width=device-width, "
-            "initial-scale=1\"/>\n"
-            "<title>%s: %zu passed, %zu failed</title>\n"
-            "<style>%s</style></head>\n"
             "<body>\n<h1>Validation of scattering models</h1>\n"
             "<p class=\"verdict %s\">%s %s: %zu verdicts passed, %zu failed, "
             "of %zu model%s from %zu direction%s in all.</p>\n",
-            bad ? "Not sound" : "Sound", r->passed, r->failed, style,
             bad ? "bad" : "good", bad ? "✗" : "✓", bad ? "Not sound" : "Sound",
             r->passed, r->failed, r->models, r->models == 1 ? "" : "s",
             r->results, r->results == 1 ? "" : "s");
@@ -345,7 +288,7 @@ static void overview(const struct page *p)
           "<div class=\"scroll\"><table>\n<thead><tr><th>model</th>",
           out);
     for (size_t c = 0; c < p->columns; c++)
-        element(out, "th", r->result[0].verdict[c].check);
+        html_element(out, "th", r->result[0].verdict[c].check);
     fputs("</tr></thead>\n<tbody>\n", out);
     for (struct span s = { 0, 0 }; s.last < r->results;) {
         s = span_next(r, s.last);
@@ -361,54 +304,19 @@ static void overview(const struct page *p)
 
 /* -- pictures -------------------------------------------------------------- */
 
-/* NULL if it cannot be read; owned by the caller. */
-static char *read_file(const char *path)
-{
-    char *text = NULL;
-    size_t size = 0;
-    FILE *in = fopen(path, "r");
-    const bool ok = in && getdelim(&text, &size, '\0', in) > 0;
-    if (in)
-        fclose(in);
-    if (ok)
-        return text;
-    free(text);
-    return NULL;
-}
-
-/* The element alone, its names made unlike those of other pictures. */
-static void inline_svg(FILE *out, const char *svg, int picture)
-{
-    static const char *const named[] = { "id=\"", "id='", "href='#", "href=\"#",
-                                         "url(#" };
-    const char *p = strstr(svg, "<svg");
-    while (p && *p) {
-        size_t n = 0;
-        for (size_t i = 0; n == 0 && i < sizeof named / sizeof *named; i++)
-            if (strncmp(p, named[i], strlen(named[i])) == 0)
-                n = strlen(named[i]);
-        if (n > 0) {
-            fprintf(out, "%.*sp%d-", (int)n, p, picture);
-            p += n;
-        } else {
-            fputc(*p++, out);
-        }
-    }
-}
-
 /* Draws into the folder and removes what was drawn. */
 static bool draw(struct page *p, const struct plot *plot,
                  const struct plot_request *r, struct err *err)
 {
     struct figure_made made = { .paths = 0 };
     bool ok = plot->run(r, &made, err);
-    char *svg = ok ? read_file(r->output) : NULL;
+    char *svg = ok ? html_file(r->output) : NULL;
     if (svg) {
         p->pictures++;
         fputs("<figure><div class=\"scroll\">", p->out);
-        inline_svg(p->out, svg, p->pictures);
+        html_svg(p->out, svg, p->pictures);
         fputs("</div><figcaption>", p->out);
-        html(p->out, plot->about);
+        html_text(p->out, plot->about);
         fputs("</figcaption></figure>\n", p->out);
     } else if (ok) {
         ok = err_set(err, "%s: cannot be read", r->output);
@@ -442,7 +350,7 @@ static void pictures_of(struct page *p, const struct recorded_result *one)
         fputs("<p>No picture: this model cannot be made again", out);
         if (why.text[0]) {
             fputs(" (", out);
-            html(out, why.text);
+            html_text(out, why.text);
             fputs(")", out);
         }
         fputs(".</p>\n", out);
@@ -470,7 +378,7 @@ static void pictures_of(struct page *p, const struct recorded_result *one)
         snprintf(path, sizeof path, "%s/%s.svg", p->folder, kind[k]->name);
         if (!draw(p, kind[k], &r, &why)) {
             fputs("<p>No picture: ", out);
-            html(out, why.text);
+            html_text(out, why.text);
             fputs(".</p>\n", out);
         }
     }
@@ -579,7 +487,7 @@ static void worst_row(FILE *out, const struct verdict *v, struct said said)
     number(out, v->limit, "%.4g");
     if (said.unit) {
         fputs("</td><td>", out);
-        html(out, v->unit);
+        html_text(out, v->unit);
     }
     if (said.p) {
         fputs("</td><td class=\"n\">", out);
@@ -590,7 +498,7 @@ static void worst_row(FILE *out, const struct verdict *v, struct said said)
         fprintf(out, "</td><td>%s",
                 v->confirmed ? "confirm it" : "not asked for");
     fputs("</td><td class=\"wide\">", out);
-    html(out, v->note);
+    html_text(out, v->note);
     fputs("</td></tr>\n", out);
 }
 
@@ -623,11 +531,11 @@ static void failure(const struct page *p, struct span s, size_t column)
     for (size_t i = s.first; i < s.last; i++)
         all += fails(verdict_at(p->r, i, column));
     fputs("<article><h4>✗ ", out);
-    html(out, few[0]->check);
+    html_text(out, few[0]->check);
     fprintf(out, ": %zu of %zu directions fail</h4>\n", all, s.last - s.first);
     if (few[0]->diagnosis[0]) {
         fputs("<p class=\"diagnosis\">Probably: ", out);
-        html(out, few[0]->diagnosis);
+        html_text(out, few[0]->diagnosis);
         fputs("</p>\n", out);
     }
     const struct said said = said_of(few, n);
@@ -734,7 +642,7 @@ static void model(const struct page *p, struct span s)
         if (!v)
             continue;
         fputs("<tr>", out);
-        element(out, "td", v->check);
+        html_element(out, "td", v->check);
         fprintf(out, "<td class=\"%s\">%s %s</td><td>", class_of(v), sign_of(v),
                 word_of(v));
         if (v->applies)
@@ -746,14 +654,14 @@ static void model(const struct page *p, struct span s)
         if (v->applies)
             number(out, v->limit, "%.4g");
         fputs("</td><td>", out);
-        html(out, v->applies ? v->unit : "");
+        html_text(out, v->applies ? v->unit : "");
         fputs("</td><td class=\"n\">", out);
         if (v->applies && !isnan(v->p))
             fprintf(out, "%.2g", v->p);
         fputs("</td><td class=\"wide\">", out);
-        html(out, effect_of(r, s, c));
+        html_text(out, effect_of(r, s, c));
         fputs("</td><td class=\"wide\">", out);
-        html(out, v->note);
+        html_text(out, v->note);
         fputs("</td></tr>\n", out);
     }
     fputs("</tbody></table></div></details>\n", out);

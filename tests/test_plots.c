@@ -151,7 +151,8 @@ static void wrong_requests_are_refused(void **state)
             "did you mean \"lobe\"?");
     refused("bsdf-plot none diffuse --wo 1,0", "\"none\"",
             "lobe, lobe3d, histogram, slice, albedo, convergence, compare, "
-            "ndf, fresnel, ior, colour, kill-matrix, p-values, report");
+            "ndf, fresnel, ior, colour, kill-matrix, p-values, series, report, "
+            "writeup");
     refused("bsdf-plot", "kind", "SPEC");
     refused("bsdf-plot lobe", "lobe", "SPEC");
     refused("bsdf-plot lobe diffuse", "--wo", "degrees");
