@@ -52,8 +52,8 @@ double film_luminance(const float rgb[3]);
  *   albedo.R .G .B     layers of the first hit
  *   normal.X .Y .Z
  *   variance.R .G .B   of the mean; .Y is that of its luminance
- *   count              of samples, 32-bit whole numbers (float is read as well);
- *                      the rest are float
+ *   count              of samples, 32-bit whole numbers (float is read as
+ * well); the rest are float
  *
  * R, G, B and Z are names that the format's own documentation reserves for
  * these; LAYER.CHANNEL is its way of grouping the others.  Scan lines, ZIP.
