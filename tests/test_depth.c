@@ -14,6 +14,7 @@
 
 #include "integrator/load.h"
 #include "integrator/render.h"
+#include "integrator/scene_parts.h"
 #include "integrator/trace.h"
 #include "tests/close.h"
 
@@ -33,27 +34,52 @@ static const char *const part_name[] = { "all", "mirror", "glass",
 static struct scene *scene;
 static enum part part[PIXELS];
 
-static bool is(const struct hit *hit, const char *model)
+/* What a ray meets, and where; NULL if nothing. */
+static const struct shape *met(const struct ray *ray, struct hits *hits)
 {
-    return strcmp(bsdf_type(hit->bsdf)->name, model) == 0;
+    static struct rays rays;
+    static struct met found;
+    const struct queue queue = { .n = 1 };
+    const uint16_t first = 0;
+    vecs_put(&rays.origin, 0, ray->origin);
+    vecs_put(&rays.dir, 0, ray->dir);
+    rays.near[0] = ray->near;
+    rays.far[0] = ray->far;
+    trace_rays(scene, &rays, &queue, false, &found);
+    if (found.shape[0])
+        trace_places(&rays, &found, &first, 1, hits);
+    return found.shape[0];
+}
+
+static bool is(const struct shape *a, const char *model)
+{
+    return strcmp(bsdf_type(a->bsdf)->name, model) == 0;
 }
 
 static enum part part_at(int x, int y)
 {
+    static struct hits hits;
     const struct ray ray =
         camera_ray(scene_camera(scene), x + 0.5, y + 0.5, 0, 0);
-    struct hit hit, next;
-    if (!trace_hit(scene, &ray, &hit))
+    const struct shape *a = met(&ray, &hits);
+    if (!a)
         return PART_OTHER;
-    if (is(&hit, "dielectric"))
+    if (is(a, "dielectric"))
         return PART_GLASS;
-    if (!is(&hit, "conductor"))
+    if (!is(a, "conductor"))
         return PART_OTHER;
-    const struct vec3 back = vec3_scale(-1, ray.dir);
-    const struct ray on = trace_from(&hit, vec3_reflect(back, hit.shading.n));
-    if (!trace_hit(scene, &on, &next) || next.emits)
+    const struct vec3 normal = vecs_at(&hits.n, 0);
+    const struct vec3 dir = vec3_reflect(vec3_scale(-1, ray.dir), normal);
+    const struct ray on = {
+        .origin =
+            vec3_add(vecs_at(&hits.point, 0), vec3_scale(hits.hair[0], normal)),
+        .dir = dir,
+        .far = INFINITY,
+    };
+    a = met(&on, &hits);
+    if (!a || a->flags & SHAPE_EMITS)
         return PART_OTHER;
-    return is(&next, "dielectric") ? PART_GLASS_IN_MIRROR : PART_MIRROR;
+    return is(a, "dielectric") ? PART_GLASS_IN_MIRROR : PART_MIRROR;
 }
 
 static int setup(void **state)
