@@ -63,20 +63,22 @@ FOLDERS  := $(patsubst %/,%,$(wildcard bsdf/ validate/ plots/ integrator/))
 SOURCES  := $(foreach d,$(FOLDERS),$(wildcard $(d)/*.c))
 HEADERS  := $(foreach d,$(FOLDERS) tests,$(wildcard $(d)/*.h))
 TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
-# What `make test` runs.  Statistics over thousands of cases ask nothing new of
-# memory, and sanitizers make them take minutes.
-RUN      := $(if $(filter sanitize,$(config)),\
-              $(filter-out test_calibration test_mutants test_writeup,$(TESTS)),$(TESTS))
+# What `make test` runs.  Statistics over thousands of cases, pictures, and what
+# pages say ask nothing new of memory, and sanitizers make them take minutes.
+RUN      := $(if $(filter sanitize,$(config)),$(filter-out test_calibration \
+              test_depth test_docs test_mutants test_writeup,$(TESTS)),$(TESTS))
 # Programs of tests/ that `make test` does not run, each with its own target.
-LONG     := $(wildcard $(patsubst %,tests/%.c,bench mutants baselines calibrate))
+LONG     := $(wildcard $(patsubst %,tests/%.c,bench bench_render mutants baselines calibrate))
 HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
 
 # Loops over lanes, which see more of the registers with -O3.
 ifeq ($(config),release)
 LANED    := $(patsubst %,$(B)/obj/%.o,bsdf/diffuse bsdf/facets bsdf/rng \
-              bsdf/roughconductor bsdf/roughdielectric \
-              tests/bench validate/partition validate/quadrature \
-              validate/sphere validate/subject validate/survey)
+              bsdf/roughconductor bsdf/roughdielectric integrator/camera \
+              integrator/light integrator/path integrator/sampler \
+              integrator/trace tests/bench validate/partition \
+              validate/quadrature validate/sphere validate/subject \
+              validate/survey)
 $(LANED): FLAGS += -O3
 endif
 
@@ -393,10 +395,14 @@ $(B)/obj/%.h.alone: %.h Makefile
 	@mkdir -p $(@D)
 	@printf '#include "%s"\n' $< | $(COMPILE) -fsyntax-only -x c - && touch $@
 
+.PHONY: check-clone
+check-clone: all $(B)/bin/tests/test_docs ## what the pages say, from sources of which nothing is built yet
+	@FRESH=1 BIN=$(BIN) $(B)/bin/tests/test_docs
+
 .PHONY: valgrind
 valgrind: test ## the tests that malformed input goes through, under valgrind
 	@command -v valgrind >/dev/null || { echo "valgrind is missing" >&2; exit 2; }
-	@$(MAKE) --no-print-directory run-tests RUN='$(filter test_spec test_ior test_cli,$(TESTS))' \
+	@$(MAKE) --no-print-directory run-tests RUN='$(filter test_spec test_ior test_cli test_film,$(TESTS))' \
 	    WRAP='valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite,indirect'
 
 # By file as well with V=1.
@@ -436,9 +442,10 @@ coverage: ## run the tests and count the lines that they reach, by folder (gcc)
 	    awk "$$COVERAGE"; exit $$status
 
 .PHONY: bench
-bench: tools-found ## what calls, a chi-square and bin masses cost, as ratios and in ns
-	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/bench
+bench: tools-found ## what calls, a chi-square, bin masses and a picture cost, as ratios
+	@$(MAKE) --no-print-directory config=release -j$(JOBS) build/bin/tests/bench build/bin/tests/bench_render
 	@build/bin/tests/bench
+	@build/bin/tests/bench_render
 
 # The seed is 1 and is printed; `make mutants SEED=2` takes another.
 SEED ?= 1
@@ -481,8 +488,11 @@ MITSUBA_PYTHON := build/venv-mitsuba/bin/python
 HAS_LLVM       := $(MITSUBA_PYTHON) -c 'import drjit, sys; \
                   sys.exit(drjit.detail.llvm_version()[0] < 17)' >/dev/null 2>&1
 
-.PHONY: peer-mitsuba
-peer-mitsuba: all ## validate the BSDFs of Mitsuba 3, and why some fail (Python, mitsuba from PyPI)
+.PHONY: peer-mitsuba mitsuba
+peer-mitsuba: all mitsuba ## validate the BSDFs of Mitsuba 3, and why some fail (Python, mitsuba from PyPI)
+	python3 tests/peer_mitsuba.py $(BIN)/bsdf-validate $(MITSUBA_PYTHON) $(ONLY)
+
+mitsuba: setup
 	@[ -x $(MITSUBA_PYTHON) ] || python3 -m venv build/venv-mitsuba
 	@$(MITSUBA_PYTHON) -c 'import mitsuba, numpy' 2>/dev/null || \
 	    $(MITSUBA_PYTHON) -m pip install -q $(MITSUBA) numpy
@@ -490,7 +500,14 @@ peer-mitsuba: all ## validate the BSDFs of Mitsuba 3, and why some fail (Python,
 	    if [ "$$(id -u)" = 0 ]; then as=; else as=sudo; fi; \
 	    $$as apt-get update -qq && $$as apt-get install -y -qq \
 	        --no-install-recommends libllvm19 >/dev/null; }
-	python3 tests/peer_mitsuba.py $(BIN)/bsdf-validate $(MITSUBA_PYTHON) $(ONLY)
+
+.PHONY: peer-mitsuba-render
+peer-mitsuba-render: all mitsuba ## data/scenes/ here and by Mitsuba 3: the same pictures? (Python, mitsuba from PyPI)
+	python3 tests/peer_render.py $(BIN)/bsdf-render $(MITSUBA_PYTHON) build/peer-render $(ONLY)
+
+.PHONY: course
+course: all ## the course's scenes against pictures that others made (BSDF_SHARED=../shared)
+	sh tests/course.sh $(BIN) $${BSDF_SHARED:-../shared} build/course
 
 # -- order --------------------------------------------------------------------
 

@@ -570,9 +570,13 @@ char *bsdf_spec_with(const char *spec, const char *key, const char *value,
     char *made = NULL, between = ':';
     size_t size;
     FILE *out = s ? open_memstream(&made, &size) : NULL;
-    bool ok = out || err_set(err, "out of memory");
-    if (ok)
-        fprintf(out, "%.*s", (int)name, spec);
+    bool ok = true;
+    if (!out) {
+        free(s);
+        err_set(err, "out of memory");
+        return NULL;
+    }
+    fprintf(out, "%.*s", (int)name, spec);
     for (const char *at = spec + name + (spec[name] == ':'); ok && *at;) {
         const char *from = at;
         ok = setting_read(&at, s, spec, err);
@@ -584,7 +588,7 @@ char *bsdf_spec_with(const char *spec, const char *key, const char *value,
     }
     if (ok && value)
         fprintf(out, "%c%s=%s", between, key, value);
-    if (out && fclose(out) != 0 && ok)
+    if (fclose(out) != 0 && ok)
         ok = err_set(err, "out of memory");
     free(s);
     if (!ok) {

@@ -6,15 +6,15 @@
 #     autoload -U +X compinit bashcompinit && compinit && bashcompinit &&
 #         . completion.bash                                        # zsh
 #
-# Nothing is listed here: options, commands and kinds come from what a program
-# says to --help, checks from bsdf-validate --list, models, keys and materials
-# from bsdf-info list.
+# Options, commands and kinds come from what a program says to --help, checks
+# from bsdf-validate --list, models, keys and materials from bsdf-info list: a
+# new one needs no word here.
 
 # The argument that an option takes by --help: "FILE" of --json=FILE; nothing
 # where it takes none.
 _bsdf_argument() {
     "$1" --help 2>/dev/null | awk -v option="$2" '
-        /^ *-/ {
+        /^ +-/ {
             for (i = 1; i <= NF && $i ~ /^-/; i++) {
                 split($i, part, "[=,]")
                 if (part[1] == option)
@@ -55,7 +55,7 @@ _bsdf_materials() {
 
 # What may follow in "name:key=value,...": names, or keys, or a key's choices.
 _bsdf_spec() {
-    local word=$1 name=${1%%:*} head key
+    local word=$1 name=${1%%:*} head key values
     if [[ $word != *:* ]]; then
         bsdf-info list 2>/dev/null |
             awk '/^[a-z]/ { inside = $1 == "models" }
@@ -67,15 +67,16 @@ _bsdf_spec() {
     key=${word#"$head"}
     if [[ $key == *=* ]]; then
         key=${key%%=*}
-        case $key in
-        material | int_ior | ext_ior) _bsdf_materials ;;
-        *) bsdf-info list | awk -v name="$name:" -v key="$key" '
-               /^  [a-z]/ { inside = $1 == name }
-               inside && $1 == key && / \| / {
-                   sub(/;.*/, ""); $1 = ""; gsub(/ \| /, " "); print }' ;;
-        esac | tr -s ' ' '\n' | sed "/./s|^|$head$key=|"
+        values=$(bsdf-info list 2>/dev/null |
+            awk -v name="$name:" -v key="$key" '
+                /^  [a-z]/ { inside = $1 == name }
+                inside && /^    [a-z]/ && $1 == key { $1 = ""; print }')
+        case $values in
+        *'name or path'*) _bsdf_materials ;;
+        *' | '*) tr '|' '\n' <<<"${values%%;*}" | tr -d ' ' ;;
+        esac | sed "/./s|^|$head$key=|"
     else
-        bsdf-info list | awk -v name="$name:" -v head="$head" '
+        bsdf-info list 2>/dev/null | awk -v name="$name:" -v head="$head" '
             /^[a-z]/ { inside = 0 }
             /^  [a-z]/ { inside = $1 == name }
             inside && /^    [a-z]/ { print head $1 "=" }'
@@ -88,7 +89,9 @@ _bsdf_values() {
     FILE*) compgen -f -- "$4" ;;
     DIR) compgen -d -- "$4" ;;
     CHECK) bsdf-validate --list 2>/dev/null | awk '{ print $1 }' ;;
-    METHOD) printf '%s\n' fit average fixed: all ;;
+    METHOD)
+        printf '%s\n' fit average fixed:
+        [ "$1" != bsdf-info ] || echo all ;;
     FORMAT | HOW) _bsdf_choices "$1" "$2" ;;
     SPEC) _bsdf_spec "$4" ;;
     esac
@@ -156,7 +159,7 @@ _bsdf() {
         reply=$(_bsdf_values "$program" "$previous" "$taken" "$current")
     elif [[ $current == -* ]]; then
         reply=$("$program" --help 2>/dev/null |
-            sed -n 's/^ *\(-.,\)\{0,1\} *\(--[a-z-]*=\{0,1\}\).*/\2/p')
+            sed -n 's/^  *\(-.,\)\{0,1\} *\(--[a-z-]*=\{0,1\}\).*/\2/p')
     else
         reply=$(_bsdf_operands "$program" "$current" "${operands[@]}")
     fi

@@ -39,3 +39,15 @@ LANES void rng_uniform_many(struct rng rng, uint64_t first, size_t n, double *x,
         x[i] = u.x, y[i] = u.y, z[i] = u.z;
     }
 }
+
+LANES void rng_uniform_each(uint64_t seed, size_t n, const uint64_t *stream,
+                            const uint64_t *index, double *x, double *y,
+                            double *z)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct rng rng = { seed, stream[i] };
+        const struct vec3 u = uniform(rng, index[i]);
+        x[i] = u.x, y[i] = u.y, z[i] = u.z;
+    }
+}

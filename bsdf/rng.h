@@ -26,4 +26,8 @@ struct vec3 rng_uniform(struct rng rng, uint64_t index);
 void rng_uniform_many(struct rng rng, uint64_t first, size_t n, double *x,
                       double *y, double *z);
 
+/** Those of n pairs of a stream and an index. */
+void rng_uniform_each(uint64_t seed, size_t n, const uint64_t *stream,
+                      const uint64_t *index, double *x, double *y, double *z);
+
 #endif

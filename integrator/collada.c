@@ -311,7 +311,7 @@ static struct mesh *mesh_make(struct dae *d, const xmlNode *polygons,
                               const struct affine *world, struct err *err)
 {
     struct err why;
-    if (!loader_budget(d->l, polygons, f->count / 3, c->count / 3, 0, err))
+    if (!loader_budget(d->l, polygons, f->count / 3, c->count / 3, NULL, err))
         return NULL;
     struct mesh *m = mesh_new(f->count / 3, c->count / 3, false, &why);
     if (!m) {
@@ -353,7 +353,8 @@ static bool surface_make(struct dae *d, const xmlNode *instance,
 /* Remembers a mesh that emits, to be compared with area lights. */
 static void remember(struct dae *d, const struct mesh *m, const double *rgb)
 {
-    if (d->glowings == GLOWING_MAX || (!rgb[0] && !rgb[1] && !rgb[2]))
+    if (d->glowings == GLOWING_MAX ||
+        (rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0))
         return;
     struct vec3 lo = { INFINITY, INFINITY, INFINITY };
     struct vec3 hi = { -INFINITY, -INFINITY, -INFINITY };

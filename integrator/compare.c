@@ -518,6 +518,11 @@ void compare_print(FILE *out, const struct comparison *c)
                 c->same ? "same" : "different", c->different, c->tests, c->p,
                 c->significance, c->z, "RGB"[c->channel], c -> width,
                 c -> height, c -> x, c -> y);
+    if (c->carriers < carriers_enough)
+        fprintf(out,
+                "note: only %.1f pixels of a block carry its noise, %g are "
+                "wanted: more samples or larger blocks would be surer\n",
+                c->carriers, carriers_enough);
     fprintf(out,
             "mean luminance, second over first: %.5g\n"
             "variance of a pixel, second over first: %.4g\n"

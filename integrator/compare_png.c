@@ -68,6 +68,25 @@ static size_t means(const struct png *pair[2], int side, double *a, double *b,
     return n;
 }
 
+/* Apart from the mark. */
+static double alike(const struct png *pair[2])
+{
+    const struct png *a = pair[0], *b = pair[1];
+    size_t same = 0, n = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++) {
+            const size_t at = 3 * ((size_t)y * (size_t)a->width + (size_t)x);
+            int most = 0;
+            for (size_t c = at; c < at + 3; c++) {
+                const int off = abs(a->rgb[c] - b->rgb[c]);
+                most = off > most ? off : most;
+            }
+            n += !in_mark(a, x, y);
+            same += !in_mark(a, x, y) && most <= 2;
+        }
+    return n > 0 ? (double)same / (double)n : NAN;
+}
+
 static bool measure(const struct png *pair[2], int side,
                     struct png_comparison *c, struct err *err)
 {
@@ -80,6 +99,7 @@ static bool measure(const struct png *pair[2], int side,
     double *b = a + room, *ratio = b + room;
     const size_t n = means(pair, side, a, b, c);
     c->blocks = (int)n;
+    c->median = c->low = c->high = c->correlation = NAN;
     for (size_t i = 0; i < n; i++)
         ratio[i] = b[i] / a[i];
     gsl_sort(ratio, 1, n);
@@ -90,10 +110,8 @@ static bool measure(const struct png *pair[2], int side,
         c->correlation = gsl_stats_correlation(a, 1, b, 1, n);
     }
     free(a);
-    return n >= 3 || err_set(err,
-                             "%zu blocks are neither dark nor clipped: "
-                             "expected at least 3",
-                             n);
+    c->alike = alike(pair);
+    return true;
 }
 
 bool compare_png(const char *a, const char *b,
@@ -120,7 +138,8 @@ void compare_png_print(FILE *out, const struct png_comparison *c)
     fprintf(out,
             "blocks %d, left out %d clipped and %d dark\n"
             "ratio of B to A: median %.4f, 5 to 95 %%: %.4f to %.4f\n"
-            "correlation %.5f\n",
+            "correlation %.5f\n"
+            "pixels within 2 of 255: %.4f %%\n",
             c->blocks, c->clipped, c->dark, c->median, c->low, c->high,
-            c->correlation);
+            c->correlation, 100 * c->alike);
 }

@@ -14,15 +14,18 @@
 #include "integrator/compare.h"
 
 struct png_comparison {
+    double alike;       /* share of pixels that differ by at most 2 of 255
+                           in every channel */
     int blocks;         /* that were compared, of all channels */
     int clipped, dark;  /* that were left out */
-    double median;      /* of the ratios B over A */
+    double median;      /* of the ratios B over A; NaN, as what follows, of
+                           fewer than 3 blocks */
     double low, high;   /* their 5th and 95th percentile */
     double correlation; /* of the means, Pearson's */
 };
 
 /** Blocks of options->block pixels (0: 20). False and the reason where a file
- * cannot be read, sizes differ or fewer than 3 blocks are left. */
+ * cannot be read or sizes differ. */
 bool compare_png(const char *a, const char *b,
                  const struct compare_options *options,
                  struct png_comparison *result, struct err *err);

@@ -52,7 +52,8 @@ double film_luminance(const float rgb[3]);
  *   albedo.R .G .B     layers of the first hit
  *   normal.X .Y .Z
  *   variance.R .G .B   of the mean; .Y is that of its luminance
- *   count              of samples, 32-bit whole numbers; the rest are float
+ *   count              of samples, 32-bit whole numbers (float is read as
+ * well); the rest are float
  *
  * R, G, B and Z are names that the format's own documentation reserves for
  * these; LAYER.CHANNEL is its way of grouping the others.  Scan lines, ZIP.
@@ -65,11 +66,11 @@ double film_luminance(const float rgb[3]);
 bool film_write_exr(const struct film *f, const char *path,
                     const struct film_note *notes, struct err *err);
 
-/** Reads a single picture in scan lines of any compression, its data window
- * the display window.  R, G and B must be there, float or half; what else is
- * not there is NaN if a variance, else 0.  Owned by the caller; NULL and the
- * reason for any other file, of any size or nature: what a header claims is
- * held against the file's size before room is made for it. */
+/** Reads a single picture in scan lines of any compression but DWA, its data
+ * window the display window.  R, G and B must be there, float or half; what
+ * else is not there is NaN if a variance, else 0.  Owned by the caller; NULL
+ * and the reason for any other file: what a header claims is held against the
+ * file's size before room is made for it. */
 struct film *film_read_exr(const char *path, struct err *err);
 
 /* -- PNG -------------------------------------------------------------------
@@ -99,7 +100,8 @@ struct png {
 };
 
 /** Reads a PNG of any kind as 8-bit R, G, B; what is transparent lies on black.
- * Limits and claims as in film_read_exr. */
+ * A gamma that the file states is turned into sRGB's.  Limits and claims as in
+ * film_read_exr. */
 bool png_read(struct png *png, const char *path, struct err *err);
 
 /** srgb: marked as such, else as gamma 1/2.2. Whole or not at all. */

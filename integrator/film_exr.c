@@ -61,29 +61,29 @@ enum { CHANNELS = sizeof channels / sizeof channels[0] };
 
 /* The file that the library is given to read or write. */
 struct stream {
-    int fd;         /* to read */
-    int64_t size;   /* of it */
-    FILE *file;     /* to write */
-    int why;        /* errno of what failed */
-    char text[256]; /* the first that the library complained of */
+    int fd;       /* to read */
+    int64_t size; /* of it */
+    FILE *file;   /* to write */
+    int why;      /* errno of what failed */
 };
+
+/* The first that the library complained of since the last start.  It may hold
+ * the context's lock when it does, so the stream cannot be asked for. */
+static _Thread_local char complaint[256];
 
 static void complain(exr_const_context_t context, exr_result_t code,
                      const char *text)
 {
+    (void)context;
     (void)code;
-    void *user = NULL;
-    if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS ||
-        !user)
-        return;
-    struct stream *s = user;
-    if (!s->text[0])
-        snprintf(s->text, sizeof s->text, "%s", text);
+    if (!complaint[0])
+        snprintf(complaint, sizeof complaint, "%s", text);
 }
 
 static exr_context_initializer_t initializer(struct stream *s)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    complaint[0] = 0;
     init.error_handler_fn = complain;
     init.user_data = s;
     return init;
@@ -183,6 +183,8 @@ static exr_result_t write_film(struct stream *s, const struct film *f,
     exr_result_t r =
         exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, &init);
     if (r == EXR_ERR_SUCCESS)
+        r = exr_set_longname_support(context, 1);
+    if (r == EXR_ERR_SUCCESS)
         r = describe(context, f, notes);
     if (r == EXR_ERR_SUCCESS)
         r = encode(context, f);
@@ -207,9 +209,9 @@ bool film_write_exr(const struct film *f, const char *path,
         return outfile_close(&out, err);
     outfile_abandon(&out);
     return err_set(err, "%s: cannot be written: %s", path,
-                   s.why       ? strerror(s.why)
-                   : s.text[0] ? s.text
-                               : exr_get_default_error_message(r));
+                   s.why          ? strerror(s.why)
+                   : complaint[0] ? complaint
+                                  : exr_get_default_error_message(r));
 }
 
 /* -- reading --------------------------------------------------------------- */
@@ -271,9 +273,9 @@ static bool failed(exr_result_t r, const struct stream *s, const char *path,
     if (r == EXR_ERR_SUCCESS)
         return false;
     err_set(err, "%s: %s", path,
-            s->why       ? strerror(s->why)
-            : s->text[0] ? s->text
-                         : exr_get_default_error_message(r));
+            s->why         ? strerror(s->why)
+            : complaint[0] ? complaint
+                           : exr_get_default_error_message(r));
     return true;
 }
 
@@ -342,12 +344,12 @@ static bool check_channel(const struct channel *c,
                    ? err_set(err, "%s: channel %s is missing", path, c->name)
                    : true;
     const exr_pixel_type_t type = e->pixel_type;
-    if (c->type == EXR_PIXEL_UINT ? type != EXR_PIXEL_UINT
-                                  : type == EXR_PIXEL_UINT)
+    if (type == (c->type == EXR_PIXEL_UINT ? EXR_PIXEL_HALF : EXR_PIXEL_UINT))
         return err_set(err, "%s: channel %s is of %s, expected %s", path,
                        c->name, names[type],
-                       c->type == EXR_PIXEL_UINT ? names[EXR_PIXEL_UINT]
-                                                 : "float or half");
+                       c->type == EXR_PIXEL_UINT
+                           ? "32-bit whole numbers or float"
+                           : "float or half");
     if (e->x_sampling != 1 || e->y_sampling != 1)
         return err_set(err,
                        "%s: channel %s has a sample every %d x %d pixels, "

@@ -41,23 +41,23 @@ static size_t triangle_at(const struct shape *a, double *u)
     return low;
 }
 
-struct on_light {
-    struct vec3 point, normal;
+/* One of struct light_samples. */
+struct light_sample {
+    struct vec3 wi, point;
+    double pdf;
+    struct spectrum radiance;
 };
 
 /* A point of a rectangle is its corner and shares of its sides. */
-static struct vec3 on_rectangle(struct vec3 corner, struct vec3 u,
+INLINE struct vec3 on_rectangle(struct vec3 corner, struct vec3 u,
                                 struct vec3 v, double a, double b)
 {
     return vec3_add(corner, vec3_add(vec3_scale(a, u), vec3_scale(b, v)));
 }
 
 /* Uniform over the area. */
-static struct on_light on_shape(const struct shape *a, double u, double v)
+static struct light_hit on_shape(const struct shape *a, double u, double v)
 {
-    if (a->flags & SHAPE_RECTANGLE)
-        return (struct on_light){ on_rectangle(a->center, a->u, a->v, u, v),
-                                  a->normal };
     if (a->kind == SHAPE_MESH) {
         const size_t i = triangle_at(a, &u);
         const struct vec3 p = mesh_vertex(a->mesh, i, 0);
@@ -65,19 +65,20 @@ static struct on_light on_shape(const struct shape *a, double u, double v)
         const struct vec3 f = vec3_minus(mesh_vertex(a->mesh, i, 2), p);
         const double root = sqrt(u);
         return (
-            struct on_light){ on_rectangle(p, e, f, root * (1 - v), root * v),
-                              vec3_unit(vec3_cross(e, f)) };
+            struct light_hit){ on_rectangle(p, e, f, root * (1 - v), root * v),
+                               vec3_unit(vec3_cross(e, f)) };
     }
     if (a->kind == SHAPE_DISK) {
         const struct disk_point d = disk_map(u, v);
-        return (struct on_light){ on_rectangle(a->center, a->u, a->v, d.x, d.y),
-                                  a->normal };
+        return (struct light_hit){
+            on_rectangle(a->center, a->u, a->v, d.x, d.y), a->normal
+        };
     }
     const double z = 1 - 2 * u, r = sqrt(fmax(0, 1 - z * z));
     const struct vec3 n = { r * cos(2 * PI * v), r * sin(2 * PI * v), z };
-    return (struct on_light){ vec3_add(a->center, vec3_scale(a->radius, n)),
-                              a->flags & SHAPE_FLIPPED ? vec3_scale(-1, n)
-                                                       : n };
+    return (struct light_hit){ vec3_add(a->center, vec3_scale(a->radius, n)),
+                               a->flags & SHAPE_FLIPPED ? vec3_scale(-1, n)
+                                                        : n };
 }
 
 /* 1 - cos of the half angle of the cone that a sphere fills; 0 from inside. */
@@ -109,23 +110,52 @@ static struct light_sample in_cone(const struct shape *a, struct vec3 from,
 }
 
 /* Toward a point of an area; none where the light does not emit that way. */
-static struct light_sample toward(struct on_light at, double area,
+INLINE struct light_sample toward(struct light_hit at, double area,
                                   bool both_sides, struct vec3 from,
                                   bool by_distance)
 {
     const struct vec3 to = vec3_minus(at.point, from);
     const double d2 = vec3_dot(to, to), d = sqrt(d2);
     const double along = -vec3_dot(to, at.normal); /* d times the cosine */
-    struct light_sample out = { .point = at.point };
-    if (!(d2 > 0) || !(both_sides ? along != 0 : along > 0))
-        return out;
-    out.wi = vec3_scale(1 / d, to);
-    out.pdf = (by_distance ? d2 : d * d2) / (area * fabs(along));
-    return out;
+    const double seen = both_sides ? fabs(along) : along;
+    const bool there = seen > 0; /* then d > 0 as well */
+    const double scale = there ? 1 / d : 0;
+    const double pdf = (by_distance ? d2 : d * d2) / (area * seen);
+    return (struct light_sample){
+        .wi = { scale * to.x, scale * to.y, there ? scale * to.z : 1 },
+        .point = at.point,
+        .pdf = there ? pdf : 0,
+    };
+}
+
+/* A rectangle's, for many. */
+struct rectangle {
+    struct vec3 corner, u, v, normal;
+    double area;
+    bool both_sides, by_distance;
+};
+
+LANES static void toward_rectangle(const struct rectangle *rectangle, size_t n,
+                                   const struct vecs *from,
+                                   const struct vecs *u,
+                                   struct light_samples *out)
+{
+    const struct rectangle r = *rectangle;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct light_hit at = {
+            on_rectangle(r.corner, r.u, r.v, u->x[i], u->y[i]), r.normal
+        };
+        const struct light_sample l =
+            toward(at, r.area, r.both_sides, vecs_at(from, i), r.by_distance);
+        vecs_put(&out->wi, i, l.wi);
+        vecs_put(&out->point, i, l.point);
+        out->pdf[i] = l.pdf;
+    }
 }
 
 static struct light_sample of_shape(const struct shape *a, struct vec3 from,
-                                    double u, double v, unsigned compat)
+                                    double u, double v)
 {
     const bool both = a->surface.both_sides;
     struct light_sample out;
@@ -135,9 +165,7 @@ static struct light_sample of_shape(const struct shape *a, struct vec3 from,
         if (a->flags & SHAPE_FLIPPED && !both)
             out.pdf = 0;
     } else {
-        const bool by_distance =
-            compat & COMPAT_LIGHT_PDF && a->flags & SHAPE_RECTANGLE;
-        out = toward(on_shape(a, u, v), a->area, both, from, by_distance);
+        out = toward(on_shape(a, u, v), a->area, both, from, false);
     }
     out.radiance = a->surface.radiance;
     return out;
@@ -151,7 +179,6 @@ static struct light_sample by_direction(const struct light *light, double u,
     const double r = sqrt(fmax(0, 1 - y * y));
     return (struct light_sample){
         .wi = { r * sin(2 * PI * v), y, r * cos(2 * PI * v) },
-        .infinite = true,
         .pdf = half ? 1 / (2 * PI) : 1 / (4 * PI),
         .radiance = light->radiance,
     };
@@ -160,7 +187,7 @@ static struct light_sample by_direction(const struct light *light, double u,
 static struct light_sample by_picture(const struct environment *e, double u,
                                       double v)
 {
-    struct light_sample out = { .infinite = true };
+    struct light_sample out = { .pdf = 0 };
     out.wi = environment_sample(e, u, v, &out.pdf);
     out.radiance = environment_radiance(e, out.wi);
     return out;
@@ -171,36 +198,71 @@ static struct light_sample of_point(const struct light *light, struct vec3 from)
     const struct vec3 to = vec3_minus(light->position, from);
     const double d = vec3_length(to);
     if (!(d > 0))
-        return (struct light_sample){ .pdf = 0 };
+        return (struct light_sample){ .wi = { 0, 0, 1 } };
     return (struct light_sample){
         .wi = vec3_scale(1 / d, to),
         .point = light->position,
         .pdf = 1,
         .radiance = spectrum_scale(1 / (d * d), light->radiance),
-        .delta = true,
     };
 }
 
-struct light_sample light_sample(const struct scene *s, int light,
-                                 struct vec3 from, double u, double v,
-                                 unsigned compat)
+static struct light_sample one(const struct scene *s,
+                               const struct light_source *source,
+                               struct vec3 from, double u, double v)
 {
-    const struct light_source *source = &s->light[light];
     const struct light *l = &source->light;
     if (source->shape >= 0)
-        return of_shape(&s->shape[source->shape], from, u, v, compat);
+        return of_shape(&s->shape[source->shape], from, u, v);
     if (l->kind == LIGHT_POINT)
         return of_point(l, from);
     if (l->kind == LIGHT_ENVIRONMENT)
         return by_picture(l->environment, u, v);
-    if (l->kind != LIGHT_HIDDEN)
-        return by_direction(l, u, v);
-    const struct on_light at = { on_rectangle(l->position, l->u, l->v, u, v),
-                                 source->normal };
-    struct light_sample out =
-        toward(at, source->area, false, from, compat & COMPAT_LIGHT_PDF);
-    out.radiance = l->radiance;
-    return out;
+    return by_direction(l, u, v);
+}
+
+/* Whether a light is a rectangle, and which. */
+static bool rectangle_of(const struct scene *s,
+                         const struct light_source *source, unsigned compat,
+                         struct rectangle *out)
+{
+    const struct light *l = &source->light;
+    const struct shape *a =
+        source->shape >= 0 ? &s->shape[source->shape] : NULL;
+    const bool by_distance = compat & COMPAT_LIGHT_PDF;
+    if (a && a->flags & SHAPE_RECTANGLE)
+        *out = (struct rectangle){ a->center,  a->u,    a->v,
+                                   a->normal,  a->area, a->surface.both_sides,
+                                   by_distance };
+    else if (!a && l->kind == LIGHT_HIDDEN)
+        *out =
+            (struct rectangle){ l->position,  l->u,  l->v,       source->normal,
+                                source->area, false, by_distance };
+    else
+        return false;
+    return true;
+}
+
+void light_sample(const struct scene *s, int light, size_t n,
+                  const struct vecs *from, const struct vecs *u,
+                  unsigned compat, struct light_samples *out)
+{
+    const struct light_source *source = &s->light[light];
+    struct rectangle r;
+    if (rectangle_of(s, source, compat, &r)) {
+        toward_rectangle(&r, n, from, u, out);
+        for (size_t i = 0; i < n; i++)
+            out->radiance[i] = source->light.radiance;
+        return;
+    }
+    for (size_t i = 0; i < n; i++) {
+        const struct light_sample l =
+            one(s, source, vecs_at(from, i), u->x[i], u->y[i]);
+        vecs_put(&out->wi, i, l.wi);
+        vecs_put(&out->point, i, l.point);
+        out->pdf[i] = l.pdf;
+        out->radiance[i] = l.radiance;
+    }
 }
 
 /* 0 of what is no background. */
@@ -219,7 +281,7 @@ static double background_pdf(const struct light *light, struct vec3 dir)
 }
 
 double light_pdf(const struct scene *s, int light, struct vec3 from,
-                 struct vec3 dir, const struct hit *hit)
+                 struct vec3 dir, const struct light_hit *hit)
 {
     const struct light_source *source = &s->light[light];
     if (source->shape < 0)
@@ -256,4 +318,11 @@ bool light_is_point(const struct scene *s, int light)
 {
     const struct light_source *source = &s->light[light];
     return source->shape < 0 && source->light.kind == LIGHT_POINT;
+}
+
+bool light_is_infinite(const struct scene *s, int light)
+{
+    const struct light_source *source = &s->light[light];
+    return source->shape < 0 && source->light.kind != LIGHT_POINT &&
+           source->light.kind != LIGHT_HIDDEN;
 }

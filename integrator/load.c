@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "integrator/loader.h"
 
@@ -65,19 +66,34 @@ bool loader_spectrum(const struct loader *l, const xmlNode *node,
     return true;
 }
 
+/* Room for a mesh file's triangles, once. */
+static void allow(struct loader *l, const char *file)
+{
+    struct stat about;
+    char key[64];
+    if (!l->files)
+        l->files = xmlHashCreate(16);
+    if (!l->files || stat(file, &about) != 0)
+        return;
+    snprintf(key, sizeof key, "%ju:%ju", (uintmax_t)about.st_dev,
+             (uintmax_t)about.st_ino);
+    if (xmlHashAddEntry(l->files, (const xmlChar *)key, l) == 0)
+        l->allowed += mesh_times * (size_t)about.st_size;
+}
+
 bool loader_budget(struct loader *l, const xmlNode *node, size_t vertices,
-                   size_t triangles, size_t file_bytes, struct err *err)
+                   size_t triangles, const char *file, struct err *err)
 {
     size_t most = mesh_times * l->xml.bytes;
     most = most > mesh_least ? most : mesh_least;
-    /* What a file of its own brings does not count. */
-    const size_t bytes = 24 * vertices + 12 * triangles;
-    l->bytes += bytes > mesh_times * file_bytes ? bytes : 0;
-    if (l->bytes > most)
+    if (file)
+        allow(l, file);
+    l->bytes += 24 * vertices + 12 * triangles;
+    if (l->bytes > most + l->allowed)
         return xml_fail(node, err,
-                        "the meshes take more than %zu bytes, too much for a "
-                        "file of %zu",
-                        most, l->xml.bytes);
+                        "the meshes take more than %zu bytes, too much for "
+                        "files of this size",
+                        most + l->allowed);
     return true;
 }
 
@@ -106,6 +122,8 @@ struct scene *scene_load(const char *path, const struct bands *bands,
         ok = collada ? collada_load(&l, err) : mitsuba_load(&l, err);
     if (l.ids)
         xmlHashFree(l.ids, NULL);
+    if (l.files)
+        xmlHashFree(l.files, NULL);
     xml_close(&l.xml);
     if (ok)
         return l.scene;

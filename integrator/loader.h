@@ -12,7 +12,9 @@ struct loader {
     struct _xmlHashTable *ids; /* nodes by id */
     struct scene *scene;
     const struct load_options *options;
-    size_t bytes; /* of meshes so far */
+    struct _xmlHashTable *files; /* of meshes, by device and inode */
+    size_t bytes;                /* of meshes so far */
+    size_t allowed;              /* of them for the files' sake */
 };
 
 /** Each fills a scene from a document. */
@@ -38,8 +40,9 @@ bool loader_spectrum(const struct loader *l, const xmlNode *node,
                      const double *value, int count, struct spectrum *s,
                      struct err *err);
 
-/** Counts a mesh, which is used perhaps many times in a short file. */
+/** Counts a mesh, which is used perhaps many times in a short file; file is
+ * where it comes from if not from the document, else NULL. */
 bool loader_budget(struct loader *l, const xmlNode *node, size_t vertices,
-                   size_t triangles, size_t file_bytes, struct err *err);
+                   size_t triangles, const char *file, struct err *err);
 
 #endif

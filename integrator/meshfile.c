@@ -39,8 +39,17 @@ struct claims {
     size_t left;          /* bytes not claimed yet */
     char element[32];     /* the one that properties belong to */
     unsigned long long n; /* how many of them */
+    size_t numbers;       /* claimed so far */
     bool binary;
 };
+
+static bool too_many(const struct claims *c, int number, struct err *err)
+{
+    return err_set(err,
+                   "%s:%d: %llu of \"%s\" are claimed, but the file is too "
+                   "short for them",
+                   c->path, number, c->n, c->element);
+}
 
 static bool header_line(struct claims *c, const char *line, int number,
                         struct err *err)
@@ -56,25 +65,46 @@ static bool header_line(struct claims *c, const char *line, int number,
         char *end = b;
         memcpy(c->element, a, sizeof a);
         c->n = strtoull(b, &end, 10);
-        return (words == 2 && end != b && *end == '\0' && b[0] != '-') ||
-               err_set(err, "%s:%d: \"%.60s\": expected a name and a number",
-                       c->path, number, line);
+        if (words != 2 || end == b || *end || b[0] == '-')
+            return err_set(err,
+                           "%s:%d: \"%.60s\": expected a name and a number",
+                           c->path, number, line);
+        return c->n <= c->left || too_many(c, number, err);
     }
     if (strncmp(line, "property ", 9) != 0)
         return true;
-    /* A list takes at least its length. */
-    bytes = property_bytes(strcmp(a, "list") == 0 ? b : a);
-    if (bytes == 0)
+    const bool list = strcmp(a, "list") == 0;
+    const size_t one = property_bytes(list ? b : a);
+    const size_t item = list ? property_bytes(extra) : 1;
+    if (one == 0 || item == 0)
         return err_set(err, "%s:%d: \"%.60s\": expected a type such as float",
                        c->path, number, line);
-    bytes = c->binary ? bytes : 2; /* a digit and a blank */
+    /* A face has at least three corners, other lists perhaps nothing; a number
+     * of a text takes a digit and a blank. */
+    const size_t items = list && strcmp(c->element, "face") == 0 ? 3 : 0;
+    bytes = c->binary ? one + items * item : 2 + 2 * items;
     if (c->n > c->left / bytes)
-        return err_set(err,
-                       "%s:%d: %llu of \"%s\" are claimed, but the file is too "
-                       "short for them",
-                       c->path, number, c->n, c->element);
+        return too_many(c, number, err);
     c->left -= (size_t)c->n * bytes;
+    c->numbers += (size_t)c->n * (1 + items);
     return true;
+}
+
+/* Whether a text has the numbers that are claimed; assimp makes them up where
+ * it has not. */
+static bool text_check(const struct claims *c, const char *text, size_t size,
+                       struct err *err)
+{
+    size_t words = 0;
+    bool inside = false;
+    for (size_t i = 0; i < size; i++) {
+        const bool space = (unsigned char)text[i] <= ' ';
+        words += !space && !inside;
+        inside = !space;
+    }
+    return c->binary || words >= c->numbers ||
+           err_set(err, "%s: %zu numbers are claimed, but there are %zu",
+                   c->path, c->numbers, words);
 }
 
 static bool ply_check(const char *path, const char *text, size_t size,
@@ -96,7 +126,7 @@ static bool ply_check(const char *path, const char *text, size_t size,
                  (int)(n < sizeof line ? n : sizeof line - 1), at);
         line[strcspn(line, "\r")] = '\0';
         if (strcmp(line, "end_header") == 0)
-            return true;
+            return text_check(&c, end, size - (size_t)(end - text), err);
         if (!header_line(&c, line, number, err))
             return false;
     }
@@ -113,7 +143,8 @@ static bool counted(const struct aiScene *a, const char *path, size_t *vertices,
     for (unsigned i = 0; i < a->mNumMeshes; i++) {
         const struct aiMesh *m = a->mMeshes[i];
         for (unsigned k = 0; k < m->mNumFaces; k++)
-            *triangles += m->mFaces[k].mNumIndices == 3;
+            if (m->mFaces[k].mNumIndices >= 3)
+                *triangles += m->mFaces[k].mNumIndices - 2;
         *vertices += m->mNumVertices;
         *normals &= m->mNormals != NULL;
         if (m->mNumVertices && !m->mVertices)
@@ -140,7 +171,9 @@ static struct vec3 direction(struct vec3 n)
     return length > 0 ? vec3_scale(1 / length, n) : n;
 }
 
-/* Appends one of assimp's meshes. */
+/* Appends one of assimp's meshes, faces as triangles around their first corner.
+ * assimp's own ways to make triangles and to check indices end the program
+ * where a file is odd. */
 static bool append(struct mesh *m, size_t *vertex, size_t *triangle,
                    const struct aiMesh *from, bool normals,
                    const struct meshfile_options *o, const char *path,
@@ -148,18 +181,19 @@ static bool append(struct mesh *m, size_t *vertex, size_t *triangle,
 {
     for (unsigned i = 0; i < from->mNumFaces; i++) {
         const struct aiFace *f = &from->mFaces[i];
-        if (f->mNumIndices != 3)
-            continue;
-        for (int k = 0; k < 3; k++) {
-            const unsigned v = f->mIndices[o->flip_normals ? 2 - k : k];
-            if (v >= from->mNumVertices)
+        for (unsigned k = 0; k < f->mNumIndices; k++)
+            if (f->mIndices[k] >= from->mNumVertices)
                 return err_set(err,
                                "%s: a face has vertex %u: expected a number "
                                "below %u, as many as there are",
-                               path, v, from->mNumVertices);
-            m->index[3 * *triangle + (size_t)k] = (unsigned)(*vertex + v);
+                               path, f->mIndices[k], from->mNumVertices);
+        for (unsigned k = 2; k < f->mNumIndices; k++, ++*triangle) {
+            const unsigned corner[] = { 0, o->flip_normals ? k : k - 1,
+                                        o->flip_normals ? k - 1 : k };
+            for (int j = 0; j < 3; j++)
+                m->index[3 * *triangle + (size_t)j] =
+                    (unsigned)(*vertex + f->mIndices[corner[j]]);
         }
-        ++*triangle;
     }
     for (unsigned i = 0; i < from->mNumVertices; i++, ++*vertex) {
         put3(m->xyz + 3 * *vertex,
@@ -198,8 +232,9 @@ static struct mesh *convert(const struct aiScene *a, const char *path,
 
 struct mesh *meshfile_read(const char *path,
                            const struct meshfile_options *options,
-                           size_t *bytes, struct err *err)
+                           struct err *err)
 {
+    size_t bytes;
     const char *ending = strrchr(path, '.');
     const bool ply = ending && strcasecmp(ending, ".ply") == 0;
     struct mesh *m = NULL;
@@ -207,14 +242,14 @@ struct mesh *meshfile_read(const char *path,
         err_set(err, "%s: expected a name that ends in .ply or .obj", path);
         return NULL;
     }
-    char *text = xml_read_file(path, bytes, err);
+    char *text = xml_read_file(path, &bytes, err);
     if (!text)
         return NULL;
-    if (!ply || ply_check(path, text, *bytes, err)) {
+    if (bytes == 0)
+        err_set(err, "%s: it is empty", path);
+    else if (!ply || ply_check(path, text, bytes, err)) {
         const struct aiScene *a = aiImportFileFromMemory(
-            text, (unsigned)*bytes,
-            aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
-                aiProcess_ValidateDataStructure,
+            text, (unsigned)bytes, ply ? 0 : aiProcess_JoinIdenticalVertices,
             ply ? "ply" : "obj");
         if (a)
             m = convert(a, path, options, err);

@@ -14,10 +14,10 @@ struct meshfile_options {
     bool flip_normals; /* turns the triangles around */
 };
 
-/** Reads NAME.ply or NAME.obj, the latter without its materials.  bytes gets
- * the file's size.  NULL and the reason; owned by the caller. */
+/** Reads NAME.ply or NAME.obj, the latter without its materials.  NULL
+ * and the reason; owned by the caller. */
 struct mesh *meshfile_read(const char *path,
                            const struct meshfile_options *options,
-                           size_t *bytes, struct err *err);
+                           struct err *err);
 
 #endif

@@ -164,25 +164,22 @@ static bool file(struct making *s)
         .face_normals = object_flag(&s->o, "face_normals", false),
         .flip_normals = s->flipped,
     };
-    size_t bytes = 0;
     if (!name)
         object_fail(&s->o, node, "expected <string name=\"filename\">");
     if (!object_close(&s->o))
         return false;
     char *path = mitsuba_path(s->o.l, name);
-    struct mesh *m = path ? meshfile_read(path, &how, &bytes, &s->why) : NULL;
     if (!path)
-        err_set(&s->why, "out of memory");
-    free(path);
-    if (!m)
-        return false;
-    if (!loader_budget(s->o.l, node, m->vertices, m->triangles, bytes,
-                       s->o.err)) {
+        return err_set(&s->why, "out of memory");
+    struct mesh *m = meshfile_read(path, &how, &s->why);
+    if (m && !loader_budget(s->o.l, node, m->vertices, m->triangles, path,
+                            s->o.err)) {
         s->o.failed = true;
         mesh_free(m);
-        return false;
+        m = NULL;
     }
-    return scene_add_mesh(s->o.l->scene, m, &s->surface, &s->why);
+    free(path);
+    return m && scene_add_mesh(s->o.l->scene, m, &s->surface, &s->why);
 }
 
 static const struct shape_kind {

@@ -1,22 +1,88 @@
-/* path.c - one path
+/* path.c - a wave of paths, bounce by bounce
  *
  * Rows of random numbers: 0 is the point of the pixel and the first number of
  * the lens, 1 its second; then for each bounce one for the BSDF and one for
  * each light sample, of whose first the third number is for Russian roulette.
+ *
+ * A path has a slot, where what it has come by is kept.  A bounce goes
+ *   trace    rays, of which there is one a living path, meet something
+ *   sort     hits are put in groups of one BSDF each, those with delta lobes
+ *            alone last; from here on they are vertices
+ *   see      what shines against the ray
+ *   direct   each light is sampled, the BSDF evaluated, the shadow ray traced
+ *   go       the BSDF is sampled, weights are updated, rays start anew
+ * in loops over the vertices, which share nothing, so that neither their order
+ * nor their company changes a path.
  */
 #include "integrator/path.h"
 
 #include <math.h>
+#include <stdlib.h>
 
+#include "bsdf/fastmath.h"
 #include "integrator/light.h"
+#include "integrator/scene_parts.h"
 
-/* A vertex of a path, and what it is seen along. */
-struct vertex {
+/* How the ray was chosen that is being followed. */
+struct chosen {
+    bool alone; /* nothing else would have found what it finds */
+    double pdf;
+    struct vec3 from;
+};
+
+/* Vertices of one BSDF. */
+struct group {
+    const struct bsdf *bsdf;
+    unsigned lobes;
+    double eta;
+    size_t from, n;
+};
+
+struct paths {
     const struct scene *scene;
     const struct path_settings *settings;
-    struct hit hit;
-    struct vec3 wo; /* local */
-    unsigned *rays;
+    struct sampler sampler;
+    uint64_t rays_traced;
+
+    /* By piece. */
+    size_t pieces;
+    uint64_t stream[WAVE];
+    int x[WAVE], y[WAVE];
+
+    /* By slot. */
+    size_t slots;
+    uint16_t piece_of[WAVE];
+    uint32_t sample_of[WAVE];
+    struct path path[WAVE];
+    struct spectrum beta[WAVE];
+    double compression[WAVE]; /* of radiance, by the path's medium */
+    bool albedo_seen[WAVE];
+    struct chosen chosen[WAVE];
+
+    /* The rays, then, by vertex, what they hit. */
+    size_t n, lit; /* vertices; those that are not of delta lobes alone */
+    uint16_t slot[WAVE], piece[WAVE];
+    uint32_t sample[WAVE];
+    struct rays rays;
+    struct queue queue;
+    struct met met;
+    struct hits hits;
+    struct vecs wo; /* local */
+    size_t groups;
+    struct group group[WAVE];
+
+    /* For direct light and to go on. */
+    uint64_t row; /* whose numbers u are; 0 for none */
+    struct vecs u;
+    struct light_samples light;
+    struct vecs wi, dir; /* local, and in the world */
+    struct spectrum f[WAVE], sum[WAVE];
+    double pdf[WAVE], weight[WAVE];
+    double share[BANDS_MAX][WAVE]; /* a band's weights */
+    bool delta[WAVE], wanted[WAVE], blocked[WAVE];
+    struct rays other; /* than those that make the path */
+    struct met other_met;
+    struct hits other_hits;
 };
 
 static bool counts(const struct path_settings *p, int bounces)
@@ -25,7 +91,7 @@ static bool counts(const struct path_settings *p, int bounces)
            (p->only_bounce < 0 || bounces == p->only_bounce);
 }
 
-static void add(struct spectrum *sum, double factor, struct spectrum a,
+INLINE void add(struct spectrum *sum, double factor, struct spectrum a,
                 struct spectrum b)
 {
     for (int i = 0; i < BANDS_MAX; i++)
@@ -33,18 +99,63 @@ static void add(struct spectrum *sum, double factor, struct spectrum a,
 }
 
 /* Not a number if one of them is not. */
-static double largest(struct spectrum s)
+INLINE double largest(struct spectrum s)
 {
     double most = 0, sum = 0;
     for (int b = 0; b < BANDS_MAX; b++) {
-        most = s.band[b] > most ? s.band[b] : most;
+        most = fm_max(s.band[b], most);
         sum += s.band[b];
     }
     return isnan(sum) ? sum : most;
 }
 
+/* -- random numbers, and who is traced --------------------------------------
+ */
+
+static void numbers_into(struct paths *w, size_t n, uint64_t row,
+                         struct vecs *u)
+{
+    const struct sampler_lanes lanes = { w->pieces, w->stream, n, w->piece,
+                                         w->sample };
+    sampler_row(&w->sampler, row, &lanes, u);
+}
+
+/* A row's numbers of every vertex. */
+static const struct vecs *numbers(struct paths *w, uint64_t row)
+{
+    if (w->row != row)
+        numbers_into(w, w->n, row, &w->u);
+    w->row = row;
+    return &w->u;
+}
+
+/* Puts those of the first n that are wanted (NULL: all) in the order of their
+ * slots. */
+static void line_up(struct paths *w, size_t n, const bool *wanted)
+{
+    uint16_t at[WAVE]; /* 1 and what is in a slot */
+    for (size_t i = 0; i < w->slots; i++)
+        at[i] = 0;
+    for (size_t i = 0; i < n; i++)
+        at[w->slot[i]] = !wanted || wanted[i] ? (uint16_t)(i + 1) : 0;
+    struct queue *q = &w->queue;
+    q->n = 0;
+    for (size_t i = 0; i < w->slots; i++) {
+        q->ray[q->n] = (uint16_t)(at[i] - 1);
+        q->piece[q->n] = w->piece_of[i];
+        q->n += at[i] > 0;
+    }
+    w->rays_traced += q->n;
+}
+
 /* -- directions that no model chose -----------------------------------------
  */
+
+/* One vertex, for what is done one by one. */
+struct vertex {
+    const struct group *group;
+    struct vec3 wo;
+};
 
 /* Over the hemisphere above, by the cosine or uniform. */
 static struct vec3 hemisphere(enum path_sampling how, double u, double v,
@@ -68,7 +179,7 @@ static bool heads(double *u)
 static struct bsdf_sample around(const struct vertex *v, enum path_sampling how,
                                  struct vec3 u)
 {
-    const unsigned lobes = v->hit.claims->lobes;
+    const unsigned lobes = v->group->lobes;
     const bool transmits = lobes & BSDF_TRANSMISSION & ~(unsigned)BSDF_DELTA;
     struct bsdf_sample s = { .pdf = 0 };
     s.wi = hemisphere(how, u.x, u.y, &s.pdf);
@@ -81,21 +192,18 @@ static struct bsdf_sample around(const struct vertex *v, enum path_sampling how,
     if (!(s.pdf > 0))
         return (struct bsdf_sample){ .pdf = 0 };
     s.weight = spectrum_scale(fabs(s.wi.z) / s.pdf,
-                              bsdf_eval(v->hit.bsdf, v->wo, s.wi));
+                              bsdf_eval(v->group->bsdf, v->wo, s.wi));
     return s;
 }
 
-static struct bsdf_sample next(const struct vertex *v, struct vec3 u)
+static struct bsdf_sample around_or_delta(const struct vertex *v,
+                                          enum path_sampling how, struct vec3 u)
 {
-    const unsigned lobes = v->hit.claims->lobes;
-    const enum path_sampling how = v->settings->sampling;
-    if (how == PATH_BSDF || !(lobes & ~(unsigned)BSDF_DELTA))
-        return bsdf_sample(v->hit.bsdf, v->wo, u);
-    if (!(lobes & BSDF_DELTA))
+    if (!(v->group->lobes & BSDF_DELTA))
         return around(v, how, u);
     struct bsdf_sample s;
     if (heads(&u.z)) {
-        s = bsdf_sample(v->hit.bsdf, v->wo, u);
+        s = bsdf_sample(v->group->bsdf, v->wo, u);
         s.weight = spectrum_scale(s.delta ? 2 : 0, s.weight);
     } else {
         s = around(v, how, u);
@@ -105,22 +213,11 @@ static struct bsdf_sample next(const struct vertex *v, struct vec3 u)
     return s;
 }
 
-/* -- direct light -----------------------------------------------------------
- */
-
-/* The balance heuristic: n samples of density a against one of density b. */
-static double balance(double n, double a, double b)
+/* The density at which around_or_delta takes a direction. */
+static double around_density(const struct vertex *v, enum path_sampling how,
+                             struct vec3 wi)
 {
-    return n * a / (n * a + b);
-}
-
-/* The density at which next() takes a direction. */
-static double density(const struct vertex *v, struct vec3 wi)
-{
-    const unsigned lobes = v->hit.claims->lobes;
-    const enum path_sampling how = v->settings->sampling;
-    if (how == PATH_BSDF)
-        return bsdf_pdf(v->hit.bsdf, v->wo, wi);
+    const unsigned lobes = v->group->lobes;
     const bool transmits = lobes & BSDF_TRANSMISSION & ~(unsigned)BSDF_DELTA;
     const double shares =
         (transmits ? 0.5 : 1) * (lobes & BSDF_DELTA ? 0.5 : 1);
@@ -129,140 +226,261 @@ static double density(const struct vertex *v, struct vec3 wi)
     return shares * (how == PATH_COSINE ? fabs(wi.z) / PI : 1 / (2 * PI));
 }
 
-/* What one sample of a light sends through the vertex, before the weights of
- * the path and of the number of samples. */
-static struct spectrum from_light(const struct vertex *v, int light, double a,
-                                  double b)
+/* Where every vertex goes on, by numbers u: wi, pdf, share and delta. */
+static void choose(struct paths *w, const struct vecs *u)
 {
-    const struct path_settings *p = v->settings;
-    const struct hit *hit = &v->hit;
-    struct spectrum sum = { { 0 } };
-    const struct light_sample l =
-        light_sample(v->scene, light, hit->point, a, b, p->compat);
-    if (!(l.pdf > 0))
-        return sum;
-    const struct vec3 wi = frame_to_local(&hit->shading, l.wi);
-    const struct spectrum f = bsdf_eval(hit->bsdf, v->wo, wi);
-    if (largest(f) == 0)
-        return sum;
-    double weight = fabs(wi.z) / l.pdf;
-    if (p->direct == PATH_MIS && !l.delta && light_can_be_hit(v->scene, light))
-        weight *= balance(p->light_samples, l.pdf, density(v, wi));
-    const struct ray ray =
-        l.infinite ? trace_from(hit, l.wi) : trace_to(hit, l.wi, l.point);
-    ++*v->rays;
-    if (!trace_blocked(v->scene, &ray))
-        add(&sum, weight, f, l.radiance);
-    return sum;
-}
-
-/* What a ray that was not chosen for its sake sees: all that emits. */
-static struct spectrum emission(const struct scene *s, const struct hit *hit,
-                                bool there, struct vec3 dir)
-{
-    struct spectrum sum = { { 0 } };
-    const struct spectrum one = spectrum_of(BANDS_MAX, 1);
-    if (there)
-        return hit->emits ? hit->surface->radiance : sum;
-    for (int i = 0; i < light_count(s); i++)
-        add(&sum, 1, one, light_background(s, i, dir));
-    return sum;
-}
-
-static struct spectrum from_hemisphere(const struct vertex *v, struct vec3 u)
-{
-    struct spectrum sum = { { 0 } };
-    const struct bsdf_sample s = around(v, PATH_UNIFORM, u);
-    if (largest(s.weight) == 0)
-        return sum;
-    const struct vec3 dir = frame_to_world(&v->hit.shading, s.wi);
-    const struct ray ray = trace_from(&v->hit, dir);
-    struct hit hit;
-    ++*v->rays;
-    const bool there = trace_hit(v->scene, &ray, &hit);
-    add(&sum, 1, s.weight, emission(v->scene, &hit, there, dir));
-    return sum;
-}
-
-/* The direct light of a vertex; its rows of numbers begin at row. */
-static struct spectrum direct(const struct vertex *v, struct sampler *sampler,
-                              uint64_t row)
-{
-    const struct path_settings *p = v->settings;
-    const struct spectrum one = spectrum_of(BANDS_MAX, 1);
-    const int n = p->light_samples, lights = light_count(v->scene);
-    struct spectrum sum = { { 0 } }, blind = { { 0 } };
-    int blinds = 0;
-    for (int i = 0; i < lights; i++) {
-        const bool found = light_can_be_hit(v->scene, i);
-        if (p->direct == PATH_HIT && found)
+    const enum path_sampling how = w->settings->sampling;
+    const struct bsdf_samples all = { w->wi.x,
+                                      w->wi.y,
+                                      w->wi.z,
+                                      w->pdf,
+                                      { w->share[0], w->share[1], w->share[2],
+                                        w->share[3] },
+                                      w->delta };
+    for (const struct group *g = w->group; g < w->group + w->groups; g++) {
+        if (how == PATH_BSDF || g->from >= w->lit) {
+            bsdf_sample_into(g->bsdf, g->n, vecs_dirs(&w->wo, g->from),
+                             vecs_dirs(u, g->from),
+                             bsdf_samples_from(&all, g->from));
             continue;
-        const bool uniform =
-            p->direct == PATH_HEMISPHERE && !light_is_point(v->scene, i);
-        for (int k = 0; k < n; k++, row++) {
-            const struct vec3 u = sampler_row(sampler, row);
-            if (uniform)
-                add(&blind, 1, one, from_hemisphere(v, u));
-            else
-                add(&sum, 1.0 / n, one, from_light(v, i, u.x, u.y));
         }
-        blinds += uniform ? n : 0;
+        for (size_t i = g->from; i < g->from + g->n; i++) {
+            const struct vertex v = { g, vecs_at(&w->wo, i) };
+            const struct bsdf_sample a =
+                around_or_delta(&v, how, vecs_at(u, i));
+            bsdf_samples_put(&all, i, &a);
+        }
     }
-    if (blinds > 0) /* each of them sees all the lights */
-        add(&sum, 1.0 / blinds, one, blind);
-    return sum;
 }
 
-/* -- the path ---------------------------------------------------------------
+/* The density at which choose takes wi, of lit vertices. */
+static void densities(struct paths *w)
+{
+    const enum path_sampling how = w->settings->sampling;
+    for (const struct group *g = w->group; g < w->group + w->groups; g++) {
+        if (g->from >= w->lit)
+            continue;
+        if (how == PATH_BSDF) {
+            bsdf_pdf_many(g->bsdf, g->n, vecs_dirs(&w->wo, g->from),
+                          vecs_dirs(&w->wi, g->from), w->pdf + g->from);
+            continue;
+        }
+        for (size_t i = g->from; i < g->from + g->n; i++) {
+            const struct vertex v = { g, vecs_at(&w->wo, i) };
+            w->pdf[i] = around_density(&v, how, vecs_at(&w->wi, i));
+        }
+    }
+}
+
+/* -- what rays see ----------------------------------------------------------
  */
 
-/* How the ray was chosen that is being followed. */
-struct chosen {
-    bool alone; /* nothing else would have found what it finds */
-    double pdf;
-    struct vec3 from;
-};
-
-static double emission_weight(const struct scene *s,
-                              const struct path_settings *p,
-                              const struct chosen *by, int light,
-                              struct vec3 dir, const struct hit *hit)
+/* The balance heuristic: n samples of density a against one of density b. */
+INLINE double balance(double n, double a, double b)
 {
-    if (by->alone || p->direct == PATH_HIT)
+    return n * a / (n * a + b);
+}
+
+static double emission_weight(const struct paths *w, const struct chosen *by,
+                              int light, struct vec3 dir,
+                              const struct light_hit *hit)
+{
+    if (by->alone || w->settings->direct == PATH_HIT)
         return 1;
-    if (p->direct != PATH_MIS)
+    if (w->settings->direct != PATH_MIS)
         return 0;
-    const double pdf = light_pdf(s, light, by->from, dir, hit);
-    return 1 - balance(p->light_samples, pdf, by->pdf);
+    const double pdf = light_pdf(w->scene, light, by->from, dir, hit);
+    return 1 - balance(w->settings->light_samples, pdf, by->pdf);
 }
 
-/* What is emitted against the ray, times the weight of the path so far. */
-static void see(const struct scene *s, const struct path_settings *p,
-                const struct chosen *by, const struct ray *ray,
-                const struct hit *hit, struct spectrum beta,
-                struct spectrum *sum)
+/* A ray that leaves the scene. */
+static void see_background(struct paths *w, size_t ray)
 {
-    if (hit) {
-        const bool found =
-            hit->emits && (by->alone || !hit->surface->unsampled);
-        if (found)
-            add(sum, emission_weight(s, p, by, hit->light, ray->dir, hit), beta,
-                hit->surface->radiance);
-        return;
-    }
-    for (int i = 0; i < light_count(s); i++) {
-        const struct spectrum l = light_background(s, i, ray->dir);
+    const size_t slot = w->slot[ray];
+    const struct vec3 dir = vecs_at(&w->rays.dir, ray);
+    for (int i = 0; i < light_count(w->scene); i++) {
+        if (!light_is_infinite(w->scene, i))
+            continue;
+        const struct spectrum l = light_background(w->scene, i, dir);
         if (largest(l) > 0)
-            add(sum, emission_weight(s, p, by, i, ray->dir, NULL), beta, l);
+            add(&w->path[slot].radiance,
+                emission_weight(w, &w->chosen[slot], i, dir, NULL),
+                w->beta[slot], l);
     }
 }
+
+/* What surfaces emit against the rays. */
+static void see_emission(struct paths *w)
+{
+    const struct hits *h = &w->hits;
+    for (size_t i = 0; i < w->n; i++) {
+        const size_t slot = w->slot[i];
+        const struct chosen *by = &w->chosen[slot];
+        const struct shape *a = h->shape[i];
+        if (!h->emits[i] || !(by->alone || !a->surface.unsampled))
+            continue;
+        const struct light_hit at = { vecs_at(&h->point, i),
+                                      vecs_at(&h->normal, i) };
+        const double weight =
+            emission_weight(w, by, a->light, (struct vec3){ 0 }, &at);
+        add(&w->path[slot].radiance, weight, w->beta[slot],
+            a->surface.radiance);
+    }
+}
+
+/* All that emits against a ray that was not chosen for its sake. */
+static struct spectrum emission(const struct scene *s, const struct shape *a,
+                                bool emits, struct vec3 dir)
+{
+    struct spectrum sum = { { 0 } };
+    const struct spectrum one = spectrum_of(BANDS_MAX, 1);
+    if (a)
+        return emits ? a->surface.radiance : sum;
+    for (int i = 0; i < light_count(s); i++)
+        if (light_is_infinite(s, i))
+            add(&sum, 1, one, light_background(s, i, dir));
+    return sum;
+}
+
+/* -- direct light -----------------------------------------------------------
+ */
+
+LANES static void to_local(const struct hits *h, size_t n, const struct vecs *v,
+                           double sign, struct vecs *local)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct frame f = hits_frame(h, i);
+        vecs_put(local, i, vec3_scale(sign, frame_to_local(&f, vecs_at(v, i))));
+    }
+}
+
+LANES static void to_world(const struct hits *h, size_t n, const struct vecs *v,
+                           struct vecs *world)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct frame f = hits_frame(h, i);
+        vecs_put(world, i, frame_to_world(&f, vecs_at(v, i)));
+    }
+}
+
+/* What a light's sample counts, of several; pdf 0 for it alone. */
+LANES static void light_weights(size_t n, double several, const double *wi_z,
+                                const double *light_pdf, const double *pdf,
+                                double *weight)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        weight[i] = fabs(wi_z[i]) / light_pdf[i] *
+                    balance(several, light_pdf[i], pdf[i]);
+}
+
+/* One sample of a light for every lit vertex, into sum. */
+static void from_light(struct paths *w, int light, const struct vecs *u)
+{
+    const struct path_settings *p = w->settings;
+    const size_t n = w->lit;
+    light_sample(w->scene, light, n, &w->hits.point, u, p->compat, &w->light);
+    to_local(&w->hits, n, &w->light.wi, 1, &w->wi);
+    for (const struct group *g = w->group; g < w->group + w->groups; g++)
+        if (g->from < n)
+            bsdf_eval_many(g->bsdf, g->n, vecs_dirs(&w->wo, g->from),
+                           vecs_dirs(&w->wi, g->from), w->f + g->from);
+    if (p->direct == PATH_MIS && light_can_be_hit(w->scene, light))
+        densities(w);
+    else
+        for (size_t i = 0; i < n; i++)
+            w->pdf[i] = 0;
+    light_weights(n, p->light_samples, w->wi.z, w->light.pdf, w->pdf,
+                  w->weight);
+    if (light_is_infinite(w->scene, light))
+        trace_from(&w->hits, n, &w->light.wi, &w->other);
+    else
+        trace_to(&w->hits, n, &w->light.wi, &w->light.point, &w->other);
+    for (size_t i = 0; i < n; i++)
+        w->wanted[i] = w->light.pdf[i] > 0 && largest(w->f[i]) != 0;
+    line_up(w, n, w->wanted);
+    trace_blocked(w->scene, &w->other, &w->queue, w->blocked);
+    const double share = 1.0 / p->light_samples;
+    for (size_t i = 0; i < n; i++)
+        if (w->wanted[i] && !w->blocked[i])
+            add(&w->sum[i], share * w->weight[i], w->f[i],
+                w->light.radiance[i]);
+}
+
+/* One of a number of uniform directions for every lit vertex, into sum. */
+static void from_hemisphere(struct paths *w, const struct vecs *u,
+                            double number)
+{
+    const size_t n = w->lit;
+    for (const struct group *g = w->group; g < w->group + w->groups; g++)
+        for (size_t i = g->from; g->from < n && i < g->from + g->n; i++) {
+            const struct vertex v = { g, vecs_at(&w->wo, i) };
+            const struct bsdf_sample a =
+                around(&v, PATH_UNIFORM, vecs_at(u, i));
+            vecs_put(&w->wi, i, a.wi);
+            w->f[i] = a.weight;
+            w->wanted[i] = largest(a.weight) != 0;
+        }
+    to_world(&w->hits, n, &w->wi, &w->dir);
+    trace_from(&w->hits, n, &w->dir, &w->other);
+    line_up(w, n, w->wanted);
+    trace_rays(w->scene, &w->other, &w->queue, false, &w->other_met);
+    uint16_t there[WAVE], there_n = 0;
+    for (size_t k = 0; k < w->queue.n; k++) {
+        const uint16_t i = w->queue.ray[k];
+        if (w->other_met.shape[i])
+            there[there_n++] = i;
+        else
+            add(&w->sum[i], 1 / number, w->f[i],
+                emission(w->scene, NULL, false, vecs_at(&w->dir, i)));
+    }
+    struct hits *h = &w->other_hits;
+    trace_places(&w->other, &w->other_met, there, there_n, h);
+    for (size_t k = 0; k < there_n; k++)
+        add(&w->sum[there[k]], 1 / number, w->f[there[k]],
+            emission(w->scene, h->shape[k], h->emits[k], (struct vec3){ 0 }));
+}
+
+/* Whether a light's samples are uniform directions, each of which sees all. */
+static bool blind(const struct paths *w, int light)
+{
+    return w->settings->direct == PATH_HEMISPHERE &&
+           !light_is_point(w->scene, light);
+}
+
+/* The direct light of the lit vertices; its rows of numbers begin at row. */
+static void direct(struct paths *w, uint64_t row)
+{
+    const struct path_settings *p = w->settings;
+    const int lights = light_count(w->scene);
+    double blinds = 0;
+    for (size_t i = 0; i < w->lit; i++)
+        w->sum[i] = (struct spectrum){ { 0 } };
+    for (int i = 0; i < lights; i++)
+        blinds += blind(w, i) ? p->light_samples : 0;
+    for (int i = 0; i < lights; i++) {
+        if (p->direct == PATH_HIT && light_can_be_hit(w->scene, i))
+            continue;
+        for (int k = 0; k < p->light_samples; k++, row++) {
+            if (blind(w, i))
+                from_hemisphere(w, numbers(w, row), blinds);
+            else
+                from_light(w, i, numbers(w, row));
+        }
+    }
+    for (size_t i = 0; i < w->lit; i++)
+        add(&w->path[w->slot[i]].radiance, 1, w->beta[w->slot[i]], w->sum[i]);
+}
+
+/* -- from one vertex to the next --------------------------------------------
+ */
 
 /* Divides the weight by the probability to go on; false if it does not. */
-static bool roulette(const struct path_settings *p, int bounces, double u,
+static bool roulette(const struct path_settings *p, double u,
                      double radiance_scale, struct spectrum *beta)
 {
-    if (bounces < p->rr_depth)
-        return true;
     const double q = p->rr_probability > 0
                          ? p->rr_probability
                          : fmin(0.95, largest(*beta) * radiance_scale);
@@ -272,66 +490,251 @@ static bool roulette(const struct path_settings *p, int bounces, double u,
     return true;
 }
 
-static struct ray camera_sample(const struct scene *s, int x, int y,
-                                struct sampler *sampler)
+/* What sampling the BSDF makes of a path; false where it ends. */
+static bool weigh(struct paths *w, const struct group *g, size_t i)
 {
-    const struct camera *c = scene_camera(s);
-    const struct vec3 u = sampler_row(sampler, 0);
-    const double v = c->lens_radius > 0 ? sampler_row(sampler, 1).x : 0;
-    return camera_ray(c, x + u.x, y + u.y, u.z, v);
+    const size_t slot = w->slot[i];
+    struct spectrum weight, *beta = &w->beta[slot];
+    for (int b = 0; b < BANDS_MAX; b++)
+        weight.band[b] = w->share[b][i];
+    if (!w->delta[i] && !w->albedo_seen[slot]) {
+        w->albedo_seen[slot] = true;
+        w->path[slot].albedo = weight;
+    }
+    *beta = spectrum_mul(*beta, weight);
+    const double most = largest(*beta);
+    if (!isfinite(most))
+        w->path[slot].radiance.band[0] = NAN; /* which is not lost */
+    if (!(most > 0))
+        return false;
+    if (w->wo.z[i] * w->wi.z[i] < 0)
+        w->compression[slot] *=
+            w->wo.z[i] > 0 ? g->eta * g->eta : 1 / (g->eta * g->eta);
+    return true;
 }
 
-struct path path_trace(const struct scene *s, const struct path_settings *p,
-                       int x, int y, struct sampler *sampler)
+/* Keeps the rays of the vertices that are wanted. */
+static void keep(struct paths *w)
 {
-    struct path out = { .rays = 0 };
-    struct vertex v; /* the hit is filled by rays, and large */
-    v.scene = s;
-    v.settings = p;
-    v.rays = &out.rays;
-    struct ray ray = camera_sample(s, x, y, sampler);
-    struct chosen by = { .alone = true };
-    struct spectrum beta = spectrum_of(scene_bands(s)->count, 1);
-    double compression = 1; /* of radiance, by the medium that the path is in */
-    bool seen_albedo = false;
-    const uint64_t lights =
-        (uint64_t)light_count(s) * (uint64_t)p->light_samples;
-    const uint64_t rows = 1 + (lights > 0 ? lights : 1);
-    for (int bounces = 0;; bounces++) {
-        const uint64_t row = 2 + (uint64_t)bounces * rows;
-        out.rays++;
-        const bool there = trace_hit(s, &ray, &v.hit);
-        if (counts(p, bounces))
-            see(s, p, &by, &ray, there ? &v.hit : NULL, beta, &out.radiance);
-        if (there && bounces == 0) {
-            out.depth = v.hit.distance;
-            out.normal = v.hit.shading.n;
-        }
-        if (!there || bounces == p->max_depth)
-            break;
-        v.wo = frame_to_local(&v.hit.shading, vec3_scale(-1, ray.dir));
-        const bool delta_only = !(v.hit.claims->lobes & ~(unsigned)BSDF_DELTA);
-        if (!delta_only && counts(p, bounces + 1))
-            add(&out.radiance, 1, beta, direct(&v, sampler, row + 1));
-        const struct bsdf_sample next_one = next(&v, sampler_row(sampler, row));
-        if (!next_one.delta && !seen_albedo) {
-            seen_albedo = true;
-            out.albedo = next_one.weight;
-        }
-        beta = spectrum_mul(beta, next_one.weight);
-        if (!isfinite(largest(beta)))
-            out.radiance.band[0] = NAN; /* which is not lost */
-        if (!(largest(beta) > 0))
-            break;
-        if (v.wo.z * next_one.wi.z < 0)
-            compression *= v.wo.z > 0
-                               ? v.hit.claims->eta * v.hit.claims->eta
-                               : 1 / (v.hit.claims->eta * v.hit.claims->eta);
-        if (!roulette(p, bounces + 1, sampler_row(sampler, row + 1).z,
-                      compression, &beta))
-            break;
-        by = (struct chosen){ next_one.delta, next_one.pdf, v.hit.point };
-        ray = trace_from(&v.hit, frame_to_world(&v.hit.shading, next_one.wi));
+    struct rays *r = &w->rays;
+    size_t m = 0;
+    for (size_t i = 0; i < w->n; i++) {
+        w->slot[m] = w->slot[i];
+        vecs_put(&r->origin, m, vecs_at(&r->origin, i));
+        vecs_put(&r->dir, m, vecs_at(&r->dir, i));
+        r->near[m] = r->near[i];
+        r->far[m] = r->far[i];
+        m += w->wanted[i];
     }
-    return out;
+    w->n = m;
+}
+
+/* Of the rays that are the last of their paths, those that may see light. */
+static void want_light(struct paths *w)
+{
+    const struct path_settings *p = w->settings;
+    const bool found = p->direct == PATH_MIS || p->direct == PATH_HIT;
+    bool toward[WAVE];
+    trace_toward_light(w->scene, &w->rays, w->n, toward);
+    for (size_t i = 0; i < w->n; i++)
+        w->wanted[i] = w->wanted[i] && toward[i] && counts(p, p->max_depth) &&
+                       (found || w->delta[i]);
+}
+
+static void go_on(struct paths *w, uint64_t row, int bounces)
+{
+    const struct path_settings *p = w->settings;
+    struct vecs u;
+    numbers_into(w, w->n, row, &u);
+    choose(w, &u);
+    for (const struct group *g = w->group; g < w->group + w->groups; g++)
+        for (size_t i = g->from; i < g->from + g->n; i++) {
+            w->wanted[i] = weigh(w, g, i);
+            w->chosen[w->slot[i]] =
+                (struct chosen){ w->delta[i], w->pdf[i],
+                                 vecs_at(&w->hits.point, i) };
+        }
+    if (bounces + 1 >= p->rr_depth) {
+        const struct vecs *v = numbers(w, row + 1);
+        for (size_t i = 0; i < w->n; i++) {
+            const size_t slot = w->slot[i];
+            w->wanted[i] =
+                w->wanted[i] &&
+                roulette(p, v->z[i], w->compression[slot], &w->beta[slot]);
+        }
+    }
+    to_world(&w->hits, w->n, &w->wi, &w->dir);
+    trace_from(&w->hits, w->n, &w->dir, &w->rays);
+    if (bounces + 1 == p->max_depth)
+        want_light(w);
+    keep(w);
+}
+
+/* -- a bounce ---------------------------------------------------------------
+ */
+
+/* The group of a BSDF; a new one if need be. */
+static size_t group_of(struct paths *w, const struct shape *a)
+{
+    size_t i = 0;
+    while (i < w->groups && w->group[i].bsdf != a->bsdf)
+        i++;
+    if (i == w->groups)
+        w->group[w->groups++] =
+            (struct group){ a->bsdf, a->claims.lobes, a->claims.eta, 0, 0 };
+    w->group[i].n++;
+    return i;
+}
+
+static bool delta_only(const struct group *g)
+{
+    return !(g->lobes & ~(unsigned)BSDF_DELTA);
+}
+
+/* Vertices of the rays that hit something, in groups. */
+static void sort(struct paths *w)
+{
+    uint16_t ray[WAVE], slot[WAVE], group[WAVE];
+    size_t at[WAVE], next = 0;
+    w->groups = 0;
+    for (size_t i = 0; i < w->n; i++)
+        if (w->met.shape[i])
+            group[i] = (uint16_t)group_of(w, w->met.shape[i]);
+    w->lit = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t k = 0; k < w->groups; k++)
+            if (delta_only(&w->group[k]) == pass) {
+                at[k] = w->group[k].from = next;
+                next += w->group[k].n;
+                w->lit = pass == 0 ? next : w->lit;
+            }
+    for (size_t i = 0; i < w->n; i++)
+        if (w->met.shape[i]) {
+            const size_t k = at[group[i]]++;
+            ray[k] = (uint16_t)i;
+            slot[k] = w->slot[i];
+        }
+    w->n = next;
+    w->row = 0;
+    for (size_t k = 0; k < w->n; k++) {
+        w->slot[k] = slot[k];
+        w->piece[k] = w->piece_of[slot[k]];
+        w->sample[k] = w->sample_of[slot[k]];
+        vecs_put(&w->dir, k, vecs_at(&w->rays.dir, ray[k]));
+    }
+    trace_places(&w->rays, &w->met, ray, w->n, &w->hits);
+    to_local(&w->hits, w->n, &w->dir, -1, &w->wo);
+}
+
+static void note_first(struct paths *w)
+{
+    for (size_t i = 0; i < w->slots; i++)
+        w->path[i].depth = w->met.shape[i] ? w->met.distance[i] : 0;
+    for (size_t i = 0; i < w->n; i++)
+        w->path[w->slot[i]].normal = vecs_at(&w->hits.n, i);
+}
+
+static void camera_rays(struct paths *w)
+{
+    const struct camera *c = scene_camera(w->scene);
+    struct vecs u, lens = { .x = { 0 } };
+    for (size_t i = 0; i < w->slots; i++) {
+        w->slot[i] = (uint16_t)i;
+        w->piece[i] = w->piece_of[i];
+        w->sample[i] = w->sample_of[i];
+    }
+    w->n = w->slots;
+    numbers_into(w, w->n, 0, &u);
+    if (c->lens_radius > 0)
+        numbers_into(w, w->n, 1, &lens);
+    for (size_t i = 0; i < w->n; i++) {
+        const size_t k = w->piece[i];
+        const struct ray r = camera_ray(c, w->x[k] + u.x[i], w->y[k] + u.y[i],
+                                        u.z[i], lens.x[i]);
+        vecs_put(&w->rays.origin, i, r.origin);
+        vecs_put(&w->rays.dir, i, r.dir);
+        w->rays.near[i] = r.near;
+        w->rays.far[i] = r.far;
+    }
+}
+
+static void begin(struct paths *w)
+{
+    const struct spectrum one = spectrum_of(scene_bands(w->scene)->count, 1);
+    for (size_t i = 0; i < w->slots; i++) {
+        w->path[i] = (struct path){ .depth = 0 };
+        w->beta[i] = one;
+        w->compression[i] = 1;
+        w->albedo_seen[i] = false;
+        w->chosen[i] = (struct chosen){ .alone = true };
+    }
+    camera_rays(w);
+}
+
+const struct path *paths_trace(struct paths *w, uint64_t *rays)
+{
+    const struct path_settings *p = w->settings;
+    const uint64_t lights =
+        (uint64_t)light_count(w->scene) * (uint64_t)p->light_samples;
+    const uint64_t rows = 1 + (lights > 0 ? lights : 1);
+    w->rays_traced = 0;
+    begin(w);
+    for (int bounces = 0; w->n > 0; bounces++) {
+        const uint64_t row = 2 + (uint64_t)bounces * rows;
+        line_up(w, w->n, NULL);
+        trace_rays(w->scene, &w->rays, &w->queue, bounces == 0, &w->met);
+        for (size_t i = 0; counts(p, bounces) && i < w->n; i++)
+            if (!w->met.shape[i])
+                see_background(w, i);
+        sort(w);
+        if (counts(p, bounces))
+            see_emission(w);
+        if (bounces == 0)
+            note_first(w);
+        if (bounces == p->max_depth)
+            break;
+        if (counts(p, bounces + 1) && w->lit > 0)
+            direct(w, row + 1);
+        go_on(w, row, bounces);
+    }
+    *rays += w->rays_traced;
+    w->slots = w->pieces = 0;
+    return w->path;
+}
+
+/* -- waves ------------------------------------------------------------------
+ */
+
+struct paths *paths_new(const struct scene *s, const struct path_settings *p,
+                        struct sampler sampler)
+{
+    struct paths *w = calloc(1, sizeof *w);
+    if (w) {
+        w->scene = s;
+        w->settings = p;
+        w->sampler = sampler;
+    }
+    return w;
+}
+
+void paths_free(struct paths *w)
+{
+    free(w);
+}
+
+bool paths_add(struct paths *w, int x, int y, uint64_t stream, uint64_t first,
+               size_t n)
+{
+    const size_t piece = w->pieces;
+    if (w->slots + n > WAVE)
+        return false;
+    w->x[piece] = x;
+    w->y[piece] = y;
+    w->stream[piece] = stream;
+    w->pieces++;
+    for (size_t i = 0; i < n; i++, w->slots++) {
+        w->piece_of[w->slots] = (uint16_t)piece;
+        w->sample_of[w->slots] = (uint32_t)(first + i);
+    }
+    return true;
 }

@@ -48,16 +48,29 @@ struct path_settings {
     unsigned compat; /* COMPAT_LIGHT_PDF counts */
 };
 
+/** What a path found. */
 struct path {
     struct spectrum radiance;
-    unsigned rays;
     double depth;           /* distance of what was hit first; 0 if nothing */
     struct vec3 normal;     /* its shading normal; 0 likewise */
     struct spectrum albedo; /* the first weight that is not a delta lobe's */
 };
 
-/** Through pixel (x, y), of which the sampler gives the point, and on. */
-struct path path_trace(const struct scene *s, const struct path_settings *p,
-                       int x, int y, struct sampler *sampler);
+/** A wave of paths of one thread. */
+struct paths;
+
+/** NULL when out of memory; the scene and the settings are borrowed. */
+struct paths *paths_new(const struct scene *s, const struct path_settings *p,
+                        struct sampler sampler);
+void paths_free(struct paths *w); /* NULL is fine */
+
+/** Adds n samples, at most PIECE, from one on, of pixel (x, y), whose random
+ * numbers are those of a stream; false if there is no room. */
+bool paths_add(struct paths *w, int x, int y, uint64_t stream, uint64_t first,
+               size_t n);
+
+/** What came along those that were added, in their order, to be read before the
+ * next call; the wave is empty again.  Adds the number of rays to theirs. */
+const struct path *paths_trace(struct paths *w, uint64_t *rays);
 
 #endif

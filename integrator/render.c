@@ -30,6 +30,11 @@ struct job {
     struct render_result *result;
 };
 
+static struct sums *sums_at(const struct job *job, int x, int y)
+{
+    return &job->sums[(size_t)y * (size_t)job->width + (size_t)x];
+}
+
 static double luminance(struct spectrum s)
 {
     return 0.2126 * s.band[0] + 0.7152 * s.band[1] + 0.0722 * s.band[2];
@@ -105,33 +110,81 @@ static void count_bad(uint64_t *bad, struct render_place *first, uint64_t more,
     *bad += more;
 }
 
-/* One pixel's samples of a pass. */
-static void samples(const struct job *job, int x, int y, uint64_t more,
-                    struct sampler *sampler, struct tally *tally)
+/* Samples of a pixel that are in the wave, or in none yet. */
+struct piece {
+    struct sums *sums;
+    int x, y;
+    size_t n;
+};
+
+/* What a thread works with. */
+struct worker {
+    struct paths *paths;
+    size_t pieces;
+    struct piece piece[WAVE];
+    struct tally tally;
+};
+
+static void worker_free(struct worker *w)
+{
+    if (w)
+        paths_free(w->paths);
+    free(w);
+}
+
+/* NULL when out of memory. */
+static struct worker *worker_new(const struct job *job)
 {
     const struct render_settings *set = job->settings;
-    struct sums *a = &job->sums[(size_t)(y - job->y) * (size_t)job->width +
-                                (size_t)(x - job->x)];
-    if (a->done)
-        return;
-    /* Wide enough for any picture, whose sides are below 2^16. */
-    sampler_start(sampler, set->sampler, set->seed,
-                  (uint64_t)y << 32 | (uint64_t)x);
-    for (uint64_t i = 0; i < more && a->n < set->samples; i++) {
-        sampler_go(sampler, a->n);
-        struct path p = path_trace(job->scene, &set->path, x, y, sampler);
-        tally->rays += p.rays;
-        tally->paths++;
-        if (!isfinite(p.radiance.band[0] + p.radiance.band[1] +
-                      p.radiance.band[2])) {
-            count_bad(&tally->bad, &tally->first_bad, 1,
-                      (struct render_place){ x, y, a->n });
-            p.radiance = p.albedo = (struct spectrum){ { 0 } };
-        }
-        add(a, &p);
+    struct worker *w = calloc(1, sizeof *w);
+    if (w)
+        w->paths = paths_new(job->scene, &set->path,
+                             (struct sampler){ set->sampler, set->seed });
+    if (w && !w->paths) {
+        free(w);
+        return NULL;
     }
-    a->done = a->n >= set->samples ||
-              (set->tolerance > 0 && certain(a, set->tolerance));
+    return w;
+}
+
+static void count(struct tally *tally, const struct piece *at, struct path p)
+{
+    tally->paths++;
+    if (!isfinite(p.radiance.band[0] + p.radiance.band[1] +
+                  p.radiance.band[2])) {
+        count_bad(&tally->bad, &tally->first_bad, 1,
+                  (struct render_place){ at->x, at->y, at->sums->n });
+        p.radiance = p.albedo = (struct spectrum){ { 0 } };
+    }
+    add(at->sums, &p);
+}
+
+static void flush(struct worker *w)
+{
+    const struct path *p = paths_trace(w->paths, &w->tally.rays);
+    for (const struct piece *at = w->piece; at < w->piece + w->pieces; at++)
+        for (size_t i = 0; i < at->n; i++)
+            count(&w->tally, at, *p++);
+    w->pieces = 0;
+}
+
+/* One pixel's samples of a pass. */
+static void samples(const struct job *job, int x, int y, struct sums *a,
+                    uint64_t more, struct worker *w)
+{
+    /* Wide enough for any picture, whose sides are below 2^16. */
+    const uint64_t stream = (uint64_t)y << 32 | (uint64_t)x;
+    const uint64_t left = job->settings->samples - a->n;
+    const uint64_t end = a->n + (more < left ? more : left);
+    for (uint64_t at = a->n; at < end;) {
+        const size_t n = end - at < PIECE ? (size_t)(end - at) : PIECE;
+        if (!paths_add(w->paths, x, y, stream, at, n)) {
+            flush(w);
+            continue;
+        }
+        w->piece[w->pieces++] = (struct piece){ a, x, y, n };
+        at += n;
+    }
 }
 
 /* Denormal numbers cost much and change nothing that is seen. */
@@ -148,15 +201,26 @@ static int tiles(int length)
 }
 
 static void tile(const struct job *job, int index, uint64_t more,
-                 struct sampler *sampler, struct tally *tally)
+                 struct worker *w)
 {
+    const struct render_settings *set = job->settings;
     const int across = tiles(job->width);
     const int x0 = index % across * TILE, y0 = index / across * TILE;
     const int x1 = x0 + TILE < job->width ? x0 + TILE : job->width;
     const int y1 = y0 + TILE < job->height ? y0 + TILE : job->height;
     for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++)
-            samples(job, job->x + x, job->y + y, more, sampler, tally);
+        for (int x = x0; x < x1; x++) {
+            struct sums *a = sums_at(job, x, y);
+            if (!a->done)
+                samples(job, job->x + x, job->y + y, a, more, w);
+        }
+    flush(w);
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++) {
+            struct sums *a = sums_at(job, x, y);
+            a->done = a->done || a->n >= set->samples ||
+                      (set->tolerance > 0 && certain(a, set->tolerance));
+        }
 }
 
 static void gather(struct render_result *r, const struct tally *t)
@@ -188,8 +252,7 @@ static bool pass_over(const struct job *job, uint64_t more, int *shown)
 #pragma omp parallel num_threads(set->threads > 0 ? set->threads               \
                                                   : omp_get_max_threads())
     {
-        struct tally tally = { 0 };
-        struct sampler *sampler = malloc(sizeof *sampler);
+        struct worker *worker = worker_new(job);
         double last = cli_elapsed();
         flush_denormals();
 #pragma omp for schedule(dynamic, 1)
@@ -197,14 +260,14 @@ static bool pass_over(const struct job *job, uint64_t more, int *shown)
             bool halt;
 #pragma omp atomic read
             halt = stopped;
-            if (halt || !sampler)
+            if (halt || !worker)
                 continue;
             if (set->stop && *set->stop) {
 #pragma omp atomic write
                 stopped = true;
                 continue;
             }
-            tile(job, i, more, sampler, &tally);
+            tile(job, i, more, worker);
             int so_far;
 #pragma omp atomic capture
             so_far = ++*shown;
@@ -213,17 +276,18 @@ static bool pass_over(const struct job *job, uint64_t more, int *shown)
                 last = cli_elapsed();
                 show(job,
                      job->result->rays +
-                         tally.rays * (uint64_t)omp_get_num_threads(),
+                         worker->tally.rays * (uint64_t)omp_get_num_threads(),
                      more, so_far);
             }
         }
-        if (!sampler) {
+        if (!worker) {
 #pragma omp atomic write
             stopped = true;
-        }
-        free(sampler);
+        } else {
 #pragma omp critical(render_gather)
-        gather(job->result, &tally);
+            gather(job->result, &worker->tally);
+        }
+        worker_free(worker);
     }
     return !stopped;
 }

@@ -17,7 +17,7 @@
  */
 #include "integrator/sampler.h"
 
-#include "bsdf/lanes.h"
+#include "bsdf/rng.h"
 
 INLINE uint32_t reversed(uint32_t x)
 {
@@ -54,84 +54,59 @@ INLINE double scrambled(uint32_t digits, uint32_t seed)
            0.5;
 }
 
-LANES static void spread(const struct sampler_seeds *seeds, uint32_t first,
-                         double *x, double *y, double *z)
+/* What a row of a pixel is scrambled and shuffled by. */
+struct seeds {
+    uint32_t order[WAVE], x[WAVE], y[WAVE], order_z[WAVE], z[WAVE];
+};
+
+LANES static void spread(const struct seeds *s, size_t n, const uint16_t *piece,
+                         const uint32_t *sample, struct vecs *out)
 {
-    const struct sampler_seeds s = *seeds;
     LANES_LOOP
-    for (uint32_t i = 0; i < SAMPLER_LANES; i++) {
-        const uint32_t back = reversed(first + i);
-        const uint32_t d = reversed(permuted(back, s.order));
-        x[i] = scrambled(d, s.x);
-        y[i] = scrambled(pascal(d), s.y);
-        z[i] = scrambled(reversed(permuted(back, s.order_z)), s.z);
+    for (size_t i = 0; i < n; i++) {
+        const size_t k = piece[i];
+        const uint32_t back = reversed(sample[i]);
+        const uint32_t d = reversed(permuted(back, s->order[k]));
+        out->x[i] = scrambled(d, s->x[k]);
+        out->y[i] = scrambled(pascal(d), s->y[k]);
+        out->z[i] = scrambled(reversed(permuted(back, s->order_z[k])), s->z[k]);
     }
-}
-
-void sampler_start(struct sampler *s, enum sampler_kind kind, uint64_t seed,
-                   uint64_t pixel)
-{
-    s->kind = kind;
-    s->rng = (struct rng){ .seed = seed, .stream = pixel };
-    s->sample = s->first = 0;
-    s->there = s->seeded = 0;
-}
-
-void sampler_go(struct sampler *s, uint64_t sample)
-{
-    const uint64_t first = sample - sample % SAMPLER_LANES;
-    if (first != s->first)
-        s->there = 0;
-    s->first = first;
-    s->sample = sample;
 }
 
 /* Of indices that no sample has. */
-static struct sampler_seeds seeds_of(struct rng rng, uint64_t row)
+static void seeds_of(const struct sampler *s, uint64_t row,
+                     const uint64_t *pixel, size_t n, struct seeds *seeds)
 {
-    const struct vec3 a = rng_uniform(rng, (uint64_t)1 << 63 | row << 1);
-    const struct vec3 b = rng_uniform(rng, (uint64_t)1 << 63 | row << 1 | 1);
-    return (struct sampler_seeds){
-        (uint32_t)(a.x * 0x1p32), (uint32_t)(a.y * 0x1p32),
-        (uint32_t)(a.z * 0x1p32), (uint32_t)(b.x * 0x1p32),
-        (uint32_t)(b.y * 0x1p32),
-    };
+    struct vecs a, b;
+    uint64_t index[WAVE];
+    for (size_t i = 0; i < WAVE; i++)
+        index[i] = (uint64_t)1 << 63 | row << 1;
+    rng_uniform_each(s->seed, n, pixel, index, a.x, a.y, a.z);
+    for (size_t i = 0; i < WAVE; i++)
+        index[i] |= 1;
+    rng_uniform_each(s->seed, n, pixel, index, b.x, b.y, b.z);
+    for (size_t i = 0; i < n; i++) {
+        seeds->order[i] = (uint32_t)(a.x[i] * 0x1p32);
+        seeds->x[i] = (uint32_t)(a.y[i] * 0x1p32);
+        seeds->y[i] = (uint32_t)(a.z[i] * 0x1p32);
+        seeds->order_z[i] = (uint32_t)(b.x[i] * 0x1p32);
+        seeds->z[i] = (uint32_t)(b.y[i] * 0x1p32);
+    }
 }
 
-/* A row that is too far to be kept; needed by few paths. */
-static struct vec3 alone(const struct sampler *s, uint64_t row)
+void sampler_row(const struct sampler *s, uint64_t row,
+                 const struct sampler_lanes *lanes, struct vecs *out)
 {
-    if (s->kind == SAMPLER_INDEPENDENT)
-        return rng_uniform(s->rng, row << 32 | s->sample);
-    const struct sampler_seeds seeds = seeds_of(s->rng, row);
-    double x[SAMPLER_LANES], y[SAMPLER_LANES], z[SAMPLER_LANES];
-    const size_t i = s->sample % SAMPLER_LANES;
-    spread(&seeds, (uint32_t)s->first, x, y, z);
-    return (struct vec3){ x[i], y[i], z[i] };
-}
-
-static void fill(struct sampler *s, uint64_t row)
-{
-    const uint64_t bit = (uint64_t)1 << row;
-    s->there |= bit;
-    if (s->kind == SAMPLER_INDEPENDENT) {
-        rng_uniform_many(s->rng, row << 32 | s->first, SAMPLER_LANES, s->x[row],
-                         s->y[row], s->z[row]);
+    if (s->kind == SAMPLER_LD) {
+        struct seeds seeds;
+        seeds_of(s, row, lanes->pixel, lanes->pieces, &seeds);
+        spread(&seeds, lanes->n, lanes->piece, lanes->sample, out);
         return;
     }
-    if (!(s->seeded & bit)) {
-        s->seeds[row] = seeds_of(s->rng, row);
-        s->seeded |= bit;
+    uint64_t stream[WAVE], index[WAVE];
+    for (size_t i = 0; i < lanes->n; i++) {
+        stream[i] = lanes->pixel[lanes->piece[i]];
+        index[i] = row << 32 | lanes->sample[i];
     }
-    spread(&s->seeds[row], (uint32_t)s->first, s->x[row], s->y[row], s->z[row]);
-}
-
-struct vec3 sampler_row(struct sampler *s, uint64_t row)
-{
-    if (row >= SAMPLER_ROWS)
-        return alone(s, row);
-    if (!(s->there >> row & 1))
-        fill(s, row);
-    const size_t i = s->sample % SAMPLER_LANES;
-    return (struct vec3){ s->x[row][i], s->y[row][i], s->z[row][i] };
+    rng_uniform_each(s->seed, lanes->n, stream, index, out->x, out->y, out->z);
 }

@@ -32,6 +32,8 @@ struct scene *scene_new(const struct bands *bands, struct err *err)
     s->wishes = (struct scene_wishes){ -1, -1, -1 };
     s->lo = (struct vec3){ INFINITY, INFINITY, INFINITY };
     s->hi = (struct vec3){ -INFINITY, -INFINITY, -INFINITY };
+    s->glow_lo = s->lo;
+    s->glow_hi = s->hi;
     return s;
 }
 
@@ -109,15 +111,28 @@ int scene_add_bsdf(struct scene *s, const char *spec, struct err *err)
     return (int)s->bsdfs++;
 }
 
+static void enclose(struct vec3 p, struct vec3 *lo, struct vec3 *hi)
+{
+    *lo = (struct vec3){ fmin(lo->x, p.x), fmin(lo->y, p.y), fmin(lo->z, p.z) };
+    *hi = (struct vec3){ fmax(hi->x, p.x), fmax(hi->y, p.y), fmax(hi->z, p.z) };
+}
+
 /* Of the shape that was added last, too. */
 static void box_add(struct scene *s, struct vec3 p)
 {
     struct shape *a = &s->shape[s->shapes - 1];
     a->reach = fmax(a->reach, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
-    s->lo = (struct vec3){ fmin(s->lo.x, p.x), fmin(s->lo.y, p.y),
-                           fmin(s->lo.z, p.z) };
-    s->hi = (struct vec3){ fmax(s->hi.x, p.x), fmax(s->hi.y, p.y),
-                           fmax(s->hi.z, p.z) };
+    enclose(p, &s->lo, &s->hi);
+    if (a->flags & SHAPE_EMITS && !a->mesh)
+        enclose(p, &s->glow_lo, &s->glow_hi);
+}
+
+/* Of what emits; of a mesh not all vertices need belong to triangles. */
+static void glow_add(struct scene *s, const struct mesh *m)
+{
+    for (size_t i = 0; i < m->triangles; i++)
+        for (int k = 0; k < 3; k++)
+            enclose(mesh_vertex(m, i, k), &s->glow_lo, &s->glow_hi);
 }
 
 static bool finite3(struct vec3 v)
@@ -285,6 +300,8 @@ bool scene_add_mesh(struct scene *s, struct mesh *m,
         shape.flags |= SHAPE_RECTANGLE;
     if (!shape_add(s, &shape, surface, err))
         goto fail;
+    if (s->shape[s->shapes - 1].flags & SHAPE_EMITS)
+        glow_add(s, m);
     for (size_t i = 0; i < m->vertices; i++)
         box_add(s, (struct vec3){ m->xyz[3 * i], m->xyz[3 * i + 1],
                                   m->xyz[3 * i + 2] });

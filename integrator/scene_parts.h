@@ -54,7 +54,9 @@ struct scene {
     struct camera camera;
     bool has_camera;
     struct scene_wishes wishes;
-    struct vec3 lo, hi; /* lo.x > hi.x: nothing yet */
+    struct vec3 lo, hi;           /* lo.x > hi.x: nothing yet */
+    struct vec3 glow_lo, glow_hi; /* of what emits, likewise; once committed
+                                     with room for Embree's rounding */
 
     RTCDevice device;
     RTCScene embree;

@@ -13,20 +13,28 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
+#include <stdalign.h>
 
+#include "bsdf/fastmath.h"
+#include "integrator/light.h"
 #include "integrator/scene_parts.h"
 
 static const double hair = 0x1p-19;
 
 struct context {
     struct RTCIntersectContext embree; /* comes first */
-    const struct ray *ray;
-    double distance; /* of the nearest sphere or disk so far */
+    const struct rays *rays;           /* by their numbers */
+    double *distance; /* of the nearest sphere or disk so far, likewise */
 };
 
 /* -- spheres and disks ------------------------------------------------------
  */
+
+static struct ray ray_at(const struct rays *r, size_t i)
+{
+    return (struct ray){ vecs_at(&r->origin, i), vecs_at(&r->dir, i),
+                         r->near[i], r->far[i] };
+}
 
 /* The nearest of two crossings in (near, far), else a negative number.  The
  * smaller root by the quotient of the product, as their difference cancels. */
@@ -87,33 +95,54 @@ static double distance_to(const struct shape *a, const struct ray *ray,
                                    : disk_distance(a, ray, ray->near, far);
 }
 
+/* Where a packet of N has the numbers of a ray and of a hit, in Embree's own
+ * order (rtcore_ray.h), which it tells in C++ alone. */
+enum {
+    RAY_TFAR = 8,
+    RAY_ID = 10,
+    RAY_SIZE = 12,
+    HIT_TRIANGLE = RAY_SIZE + 5,
+    HIT_SHAPE = RAY_SIZE + 6,
+    HIT_INSTANCE = RAY_SIZE + 7
+};
+
 static void intersect(const struct RTCIntersectFunctionNArguments *args)
 {
     const struct shape *a = args->geometryUserPtr;
-    struct context *c = (struct context *)args->context;
-    struct RTCRayHit *rh = (struct RTCRayHit *)args->rayhit;
-    if (args->N != 1 || !args->valid[0])
-        return;
-    const double far = fmin(c->distance, (double)rh->ray.tfar);
-    const double t = distance_to(a, c->ray, far);
-    if (!(t > 0))
-        return;
-    c->distance = t;
-    rh->ray.tfar = (float)t;
-    rh->hit.geomID = args->geomID;
-    rh->hit.primID = 0;
-    rh->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    const struct context *c = (const struct context *)args->context;
+    float *const packet = (float *)args->rayhit;
+    unsigned *const numbers = (unsigned *)args->rayhit;
+    for (unsigned i = 0; i < args->N; i++) {
+        if (!args->valid[i])
+            continue;
+        const unsigned id = numbers[RAY_ID * args->N + i];
+        const struct ray ray = ray_at(c->rays, id);
+        float *const tfar = packet + RAY_TFAR * args->N + i;
+        const double far = fmin(c->distance[id], (double)*tfar);
+        const double t = distance_to(a, &ray, far);
+        if (!(t > 0))
+            continue;
+        c->distance[id] = t;
+        *tfar = (float)t;
+        numbers[HIT_SHAPE * args->N + i] = args->geomID;
+        numbers[HIT_TRIANGLE * args->N + i] = 0;
+        numbers[HIT_INSTANCE * args->N + i] = RTC_INVALID_GEOMETRY_ID;
+    }
 }
 
 static void occluded(const struct RTCOccludedFunctionNArguments *args)
 {
     const struct shape *a = args->geometryUserPtr;
     const struct context *c = (const struct context *)args->context;
-    struct RTCRay *ray = (struct RTCRay *)args->ray;
-    if (args->N != 1 || !args->valid[0])
-        return;
-    if (distance_to(a, c->ray, c->ray->far) > 0)
-        ray->tfar = -INFINITY;
+    const unsigned *const id = (unsigned *)args->ray + RAY_ID * args->N;
+    float *const tfar = (float *)args->ray + RAY_TFAR * args->N;
+    for (unsigned i = 0; i < args->N; i++) {
+        if (!args->valid[i])
+            continue;
+        const struct ray ray = ray_at(c->rays, id[i]);
+        if (distance_to(a, &ray, ray.far) > 0)
+            tfar[i] = -INFINITY;
+    }
 }
 
 /* -- building ---------------------------------------------------------------
@@ -172,6 +201,9 @@ bool scene_commit(struct scene *s, struct err *err)
                        "the scene reaches to %g: expected coordinates below "
                        "1e15",
                        reach);
+    const double room = 0x1p-18 * reach;
+    s->glow_lo = vec3_minus(s->glow_lo, (struct vec3){ room, room, room });
+    s->glow_hi = vec3_add(s->glow_hi, (struct vec3){ room, room, room });
     s->device = rtcNewDevice(NULL);
     if (!s->device)
         return err_set(err, "Embree: no device (error %d)",
@@ -191,129 +223,298 @@ bool scene_commit(struct scene *s, struct err *err)
 /* -- tracing ----------------------------------------------------------------
  */
 
-static struct RTCRay embree_ray(const struct ray *r)
+INLINE float to_float(double x)
 {
-    return (struct RTCRay){
-        .org_x = (float)r->origin.x,
-        .org_y = (float)r->origin.y,
-        .org_z = (float)r->origin.z,
-        .dir_x = (float)r->dir.x,
-        .dir_y = (float)r->dir.y,
-        .dir_z = (float)r->dir.z,
-        .tnear = (float)r->near,
-        .tfar = r->far < FLT_MAX ? (float)r->far : INFINITY,
-        .mask = -1u,
-    };
+    return x < (double)FLT_MAX ? (float)x : INFINITY;
 }
 
-/* The point by its shares of the corners, and the interpolated normal. */
-static void on_triangle(const struct shape *a, size_t triangle, double u,
-                        double v, struct hit *hit)
+/* The rays of a queue from one on, as many as fit. */
+LANES static void fill(const struct rays *r, const struct queue *queue,
+                       size_t from, size_t n, int *valid, struct RTCRay16 *out)
 {
-    const struct mesh *m = a->mesh;
-    const struct vec3 p = mesh_vertex(m, triangle, 0);
-    const struct vec3 e = vec3_minus(mesh_vertex(m, triangle, 1), p);
-    const struct vec3 f = vec3_minus(mesh_vertex(m, triangle, 2), p);
-    hit->point = vec3_add(p, vec3_add(vec3_scale(u, e), vec3_scale(v, f)));
-    const struct vec3 n = vec3_cross(e, f);
-    const double length = vec3_length(n);
-    hit->normal =
-        length > 0 ? vec3_scale(1 / length, n) : (struct vec3){ 0, 0, 1 };
-    struct vec3 shading = hit->normal;
-    if (m->normal) {
-        const unsigned *at = m->index + 3 * triangle;
-        const float *const corner[] = { m->normal + 3 * (size_t)at[0],
-                                        m->normal + 3 * (size_t)at[1],
-                                        m->normal + 3 * (size_t)at[2] };
-        const double w = 1 - u - v;
-        const struct vec3 mean = {
-            w * corner[0][0] + u * corner[1][0] + v * corner[2][0],
-            w * corner[0][1] + u * corner[1][1] + v * corner[2][1],
-            w * corner[0][2] + u * corner[1][2] + v * corner[2][2],
-        };
-        const double size = vec3_length(mean);
-        if (size > 0)
-            shading = vec3_scale(1 / size, mean);
+    const uint16_t *const at = queue->ray + from;
+    LANES_LOOP
+    for (size_t i = 0; i < PACKET; i++) {
+        const size_t k = at[i < n ? i : 0];
+        valid[i] = i < n ? -1 : 0;
+        out->org_x[i] = (float)r->origin.x[k];
+        out->org_y[i] = (float)r->origin.y[k];
+        out->org_z[i] = (float)r->origin.z[k];
+        out->tnear[i] = (float)r->near[k];
+        out->dir_x[i] = (float)r->dir.x[k];
+        out->dir_y[i] = (float)r->dir.y[k];
+        out->dir_z[i] = (float)r->dir.z[k];
+        out->time[i] = 0;
+        out->tfar[i] = to_float(r->far[k]);
+        out->mask[i] = -1u;
+        out->id[i] = (unsigned)k;
+        out->flags[i] = 0;
     }
-    hit->shading = frame_about(shading);
 }
 
-static void on_sphere(const struct shape *a, const struct ray *ray, double t,
-                      struct hit *hit)
+/* How many of a queue, from one on, make a packet. */
+static size_t packet(const struct queue *queue, size_t from)
 {
-    const struct vec3 at = vec3_add(ray->origin, vec3_scale(t, ray->dir));
+    size_t n = 1;
+    while (n < PACKET && from + n < queue->n &&
+           queue->piece[from + n] == queue->piece[from])
+        n++;
+    return n;
+}
+
+void trace_rays(const struct scene *s, const struct rays *rays,
+                const struct queue *queue, bool together, struct met *met)
+{
+    alignas(64) int valid[PACKET];
+    struct RTCRayHit16 rh;
+    struct context c = { .rays = rays, .distance = met->distance };
+    rtcInitIntersectContext(&c.embree);
+    if (together)
+        c.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    for (size_t i = 0; i < queue->n; i++)
+        met->distance[queue->ray[i]] = INFINITY;
+    for (size_t at = 0, n; at < queue->n; at += n) {
+        n = packet(queue, at);
+        fill(rays, queue, at, n, valid, &rh.ray);
+        for (int i = 0; i < PACKET; i++)
+            rh.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect16(valid, s->embree, &c.embree, &rh);
+        for (size_t i = 0; i < n; i++) {
+            const size_t k = queue->ray[at + i];
+            const unsigned number = rh.hit.geomID[i];
+            met->shape[k] = NULL;
+            if (number == RTC_INVALID_GEOMETRY_ID)
+                continue;
+            met->shape[k] = &s->shape[number];
+            met->triangle[k] = rh.hit.primID[i];
+            met->u[k] = (double)rh.hit.u[i];
+            met->v[k] = (double)rh.hit.v[i];
+            if (met->shape[k]->kind == SHAPE_MESH)
+                met->distance[k] = (double)rh.ray.tfar[i];
+        }
+    }
+}
+
+void trace_blocked(const struct scene *s, const struct rays *rays,
+                   const struct queue *queue, bool *blocked)
+{
+    alignas(64) int valid[PACKET];
+    struct RTCRay16 r;
+    struct context c = { .rays = rays };
+    rtcInitIntersectContext(&c.embree);
+    for (size_t at = 0, n; at < queue->n; at += n) {
+        n = packet(queue, at);
+        fill(rays, queue, at, n, valid, &r);
+        rtcOccluded16(valid, s->embree, &c.embree, &r);
+        for (size_t i = 0; i < n; i++)
+            blocked[queue->ray[at + i]] = r.tfar[i] == -INFINITY;
+    }
+}
+
+/* Rows of slabs: T. Kay and J. Kajiya, Ray Tracing Complex Scenes, SIGGRAPH
+ * 1986.  What is parallel to a side and in its plane may go either way, as what
+ * emits is well inside. */
+INLINE void slab(double lo, double hi, double origin, double dir, double *enter,
+                 double *leave)
+{
+    const double scale = 1 / dir;
+    const double a = (lo - origin) * scale, b = (hi - origin) * scale;
+    *enter = fm_max(fm_min(a, b), *enter);
+    *leave = fm_min(fm_max(a, b), *leave);
+}
+
+LANES static void through(struct vec3 lo, struct vec3 hi, const struct rays *r,
+                          size_t n, bool *hit)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        double enter = 0, leave = INFINITY;
+        slab(lo.x, hi.x, r->origin.x[i], r->dir.x[i], &enter, &leave);
+        slab(lo.y, hi.y, r->origin.y[i], r->dir.y[i], &enter, &leave);
+        slab(lo.z, hi.z, r->origin.z[i], r->dir.z[i], &enter, &leave);
+        hit[i] = enter <= leave;
+    }
+}
+
+void trace_toward_light(const struct scene *s, const struct rays *rays,
+                        size_t n, bool *toward)
+{
+    bool endless = false;
+    for (int i = 0; i < (int)s->lights; i++)
+        endless |= light_is_infinite(s, i);
+    for (size_t i = 0; i < n; i++)
+        toward[i] = endless;
+    if (!endless && s->glow_lo.x <= s->glow_hi.x)
+        through(s->glow_lo, s->glow_hi, rays, n, toward);
+}
+
+/* -- places -----------------------------------------------------------------
+ */
+
+/* Triangles: a corner, the edges from it, and the shares of those. */
+struct corners {
+    struct vecs p, e, f;
+    double u[WAVE], v[WAVE];
+};
+
+static void corners_at(const struct met *met, size_t ray, size_t i,
+                       struct corners *c)
+{
+    const struct mesh *m = met->shape[ray]->mesh;
+    struct vec3 p = { 0, 0, 0 }, q = p, r = p;
+    if (m) {
+        const size_t triangle = met->triangle[ray];
+        p = mesh_vertex(m, triangle, 0);
+        q = mesh_vertex(m, triangle, 1);
+        r = mesh_vertex(m, triangle, 2);
+    }
+    vecs_put(&c->p, i, p);
+    vecs_put(&c->e, i, q);
+    vecs_put(&c->f, i, r);
+    c->u[i] = met->u[ray];
+    c->v[i] = met->v[ray];
+}
+
+INLINE void frame_put(struct hits *h, size_t i, struct frame f)
+{
+    vecs_put(&h->s, i, f.s);
+    vecs_put(&h->t, i, f.t);
+    vecs_put(&h->n, i, f.n);
+}
+
+/* Points by their shares of the corners. */
+LANES static void on_triangles(struct corners *c, size_t n, struct hits *h)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct vec3 p = vecs_at(&c->p, i);
+        const struct vec3 e = vec3_minus(vecs_at(&c->e, i), p);
+        const struct vec3 f = vec3_minus(vecs_at(&c->f, i), p);
+        const struct vec3 cross = vec3_cross(e, f);
+        const double length = vec3_length(cross);
+        const bool flat = length > 0;
+        const double scale = flat ? 1 / length : 0;
+        struct vec3 normal = vec3_scale(scale, cross);
+        normal.z = flat ? normal.z : 1;
+        vecs_put(&h->point, i,
+                 vec3_add(p, vec3_add(vec3_scale(c->u[i], e),
+                                      vec3_scale(c->v[i], f))));
+        vecs_put(&h->normal, i, normal);
+        frame_put(h, i, frame_about(normal));
+    }
+}
+
+/* About the interpolated normal. */
+static void smooth(const struct mesh *m, const struct met *met, size_t ray,
+                   size_t i, struct hits *h)
+{
+    const unsigned *at = m->index + 3 * (size_t)met->triangle[ray];
+    const float *const corner[] = { m->normal + 3 * (size_t)at[0],
+                                    m->normal + 3 * (size_t)at[1],
+                                    m->normal + 3 * (size_t)at[2] };
+    const double u = met->u[ray], v = met->v[ray], w = 1 - u - v;
+    const struct vec3 mean = {
+        w * corner[0][0] + u * corner[1][0] + v * corner[2][0],
+        w * corner[0][1] + u * corner[1][1] + v * corner[2][1],
+        w * corner[0][2] + u * corner[1][2] + v * corner[2][2],
+    };
+    const double size = vec3_length(mean);
+    if (size > 0)
+        frame_put(h, i, frame_about(vec3_scale(1 / size, mean)));
+}
+
+static void on_sphere(const struct shape *a, const struct rays *rays,
+                      size_t ray, double t, size_t i, struct hits *h)
+{
+    const struct vec3 at = vec3_add(vecs_at(&rays->origin, ray),
+                                    vec3_scale(t, vecs_at(&rays->dir, ray)));
     const struct vec3 n = vec3_unit(vec3_minus(at, a->center));
-    hit->point = vec3_add(a->center, vec3_scale(a->radius, n));
-    hit->normal = a->flags & SHAPE_FLIPPED ? vec3_scale(-1, n) : n;
-    hit->shading = frame_about(hit->normal);
+    const struct vec3 normal = a->flags & SHAPE_FLIPPED ? vec3_scale(-1, n) : n;
+    vecs_put(&h->point, i, vec3_add(a->center, vec3_scale(a->radius, n)));
+    vecs_put(&h->normal, i, normal);
+    frame_put(h, i, frame_about(normal));
 }
 
-static void on_disk(const struct shape *a, const struct ray *ray, double t,
-                    struct hit *hit)
+static void on_disk(const struct shape *a, const struct rays *rays, size_t ray,
+                    double t, size_t i, struct hits *h)
 {
-    hit->point = vec3_add(ray->origin, vec3_scale(t, ray->dir));
-    hit->normal = a->normal;
     const double length = vec3_length(a->u);
-    hit->shading = (struct frame){ vec3_scale(1 / length, a->u),
-                                   vec3_scale(1 / length, a->v), a->normal };
+    vecs_put(&h->point, i,
+             vec3_add(vecs_at(&rays->origin, ray),
+                      vec3_scale(t, vecs_at(&rays->dir, ray))));
+    vecs_put(&h->normal, i, a->normal);
+    frame_put(h, i,
+              (struct frame){ vec3_scale(1 / length, a->u),
+                              vec3_scale(1 / length, a->v), a->normal });
 }
 
-bool trace_hit(const struct scene *s, const struct ray *ray, struct hit *hit)
+void trace_places(const struct rays *rays, const struct met *met,
+                  const uint16_t *ray, size_t n, struct hits *h)
 {
-    struct context c = { .ray = ray, .distance = INFINITY };
-    rtcInitIntersectContext(&c.embree);
-    struct RTCRayHit rh = { .ray = embree_ray(ray) };
-    rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(s->embree, &c.embree, &rh);
-    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID)
-        return false;
-    const struct shape *a = &s->shape[rh.hit.geomID];
-    hit->distance = (double)rh.ray.tfar;
-    if (a->kind == SHAPE_MESH)
-        on_triangle(a, rh.hit.primID, (double)rh.hit.u, (double)rh.hit.v, hit);
-    else if (a->kind == SHAPE_SPHERE)
-        on_sphere(a, ray, hit->distance = c.distance, hit);
-    else
-        on_disk(a, ray, hit->distance = c.distance, hit);
-    hit->hair = hair * a->reach;
-    hit->bsdf = a->bsdf;
-    hit->claims = &a->claims;
-    hit->light = a->light;
-    hit->emits = a->flags & SHAPE_EMITS &&
-                 (a->surface.both_sides || vec3_dot(hit->normal, ray->dir) < 0);
-    hit->surface = &a->surface;
-    return true;
+    struct corners c;
+    for (size_t i = 0; i < n; i++)
+        corners_at(met, ray[i], i, &c);
+    on_triangles(&c, n, h);
+    for (size_t i = 0; i < n; i++) {
+        const size_t k = ray[i];
+        const struct shape *a = h->shape[i] = met->shape[k];
+        if (a->kind == SHAPE_SPHERE)
+            on_sphere(a, rays, k, met->distance[k], i, h);
+        else if (a->kind == SHAPE_DISK)
+            on_disk(a, rays, k, met->distance[k], i, h);
+        else if (a->mesh->normal)
+            smooth(a->mesh, met, k, i, h);
+        h->hair[i] = hair * a->reach;
+        h->emits[i] =
+            a->flags & SHAPE_EMITS &&
+            (a->surface.both_sides ||
+             vec3_dot(vecs_at(&h->normal, i), vecs_at(&rays->dir, k)) < 0);
+    }
 }
 
-bool trace_blocked(const struct scene *s, const struct ray *ray)
+/* -- rays from places -------------------------------------------------------
+ */
+
+INLINE struct vec3 start(const struct hits *h, size_t i, struct vec3 dir)
 {
-    struct context c = { .ray = ray };
-    rtcInitIntersectContext(&c.embree);
-    struct RTCRay r = embree_ray(ray);
-    rtcOccluded1(s->embree, &c.embree, &r);
-    return r.tfar == -INFINITY;
+    const struct vec3 normal = vecs_at(&h->normal, i);
+    const double off = copysign(h->hair[i], vec3_dot(dir, normal));
+    return vec3_add(vecs_at(&h->point, i), vec3_scale(off, normal));
 }
 
-struct ray trace_from(const struct hit *hit, struct vec3 dir)
+LANES void trace_from(const struct hits *h, size_t n, const struct vecs *dir,
+                      struct rays *rays)
 {
-    const double off = copysign(hit->hair, vec3_dot(dir, hit->normal));
-    return (struct ray){ .origin =
-                             vec3_add(hit->point, vec3_scale(off, hit->normal)),
-                         .dir = dir,
-                         .near = 0,
-                         .far = INFINITY };
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct vec3 d = vecs_at(dir, i);
+        vecs_put(&rays->origin, i, start(h, i, d));
+        vecs_put(&rays->dir, i, d);
+        rays->near[i] = 0;
+        rays->far[i] = INFINITY;
+    }
 }
 
 /* Aimed anew from where it starts: a tangent of a sphere that is moved by a
  * hair enters it much earlier. */
-struct ray trace_to(const struct hit *hit, struct vec3 dir, struct vec3 point)
+LANES void trace_to(const struct hits *h, size_t n, const struct vecs *dir,
+                    const struct vecs *point, struct rays *rays)
 {
-    struct ray r = trace_from(hit, dir);
-    const struct vec3 to = vec3_minus(point, r.origin);
-    const double d = vec3_length(to);
-    const double last = hair * (largest(point) + 3 * d);
-    if (d > 0)
-        r.dir = vec3_scale(1 / d, to);
-    r.far = fmax(0, d - last - hit->hair);
-    return r;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct vec3 d = vecs_at(dir, i), p = vecs_at(point, i);
+        const struct vec3 origin = start(h, i, d);
+        const struct vec3 to = vec3_minus(p, origin);
+        const double length = vec3_length(to);
+        const double reach = fm_max(fabs(p.x), fm_max(fabs(p.y), fabs(p.z)));
+        const double last = hair * (reach + 3 * length);
+        const double scale = length > 0 ? 1 / length : 0;
+        const struct vec3 aimed = vec3_scale(scale, to);
+        vecs_put(&rays->origin, i, origin);
+        rays->dir.x[i] = length > 0 ? aimed.x : d.x;
+        rays->dir.y[i] = length > 0 ? aimed.y : d.y;
+        rays->dir.z[i] = length > 0 ? aimed.z : d.z;
+        rays->near[i] = 0;
+        rays->far[i] = fm_max(0, length - last - h->hair[i]);
+    }
 }

@@ -152,7 +152,7 @@ static void rows_write(FILE *out, const struct loss *l, bool exact)
             row[1 + b] = s->albedo[b].value;
             row[1 + n + b] = s->albedo[b].error;
         }
-        table_row(out, row, (size_t)(1 + 2 * n));
+        table_row(out, row, 1 + 2 * (size_t)n);
     }
 }
 
@@ -181,7 +181,7 @@ static void table_write(FILE *out, const struct loss *l)
             const double mean = l->map[0][i][k].mean;
             const double row[] = { tilt_of(k), alpha_of(i), mean, 1 - mean,
                                    1 - l->map[1][i][k].mean };
-            table_row(out, row, (size_t)(3 + l->maps));
+            table_row(out, row, 3 + (size_t)l->maps);
         }
     for (int c = 0; c < CUTS; c++) {
         fprintf(out, "\n\n# theta_o = %g deg\n# alpha [1]\tmean albedo [1]%s\n",
@@ -189,7 +189,7 @@ static void table_write(FILE *out, const struct loss *l)
         for (int i = 0; i < ROUGH; i++) {
             const double row[] = { alpha_of(i), l->map[0][i][cut[c]].mean,
                                    l->map[1][i][cut[c]].mean };
-            table_row(out, row, (size_t)(1 + l->maps));
+            table_row(out, row, 1 + (size_t)l->maps);
         }
     }
 }
@@ -227,7 +227,7 @@ static void alpha_panel(struct figure *fig, double bottom, struct chart_axis y)
                        .curves = CUTS };
     for (int i = 0; i < CUTS; i++) {
         curve[i] = (struct chart_curve){
-            .block = 3 + i, .x = "$1", .y = "$2", .line = 4 + i
+            .block = 3 + i, .x = "$1", .y = "$2", .line = 5 + i
         };
         snprintf(curve[i].text, sizeof curve[i].text, "θₒ = %g°",
                  tilt_of(cut[i]));
@@ -289,7 +289,7 @@ static void script_write(struct figure *fig, const struct loss *l)
         key[bands + i].text[0] = '\0';
     }
     for (int i = 0; l->rough && i < CUTS; i++) {
-        key[n] = (struct chart_curve){ .line = 4 + i };
+        key[n] = (struct chart_curve){ .line = 5 + i };
         snprintf(key[n++].text, sizeof key[0].text, "θₒ = %g°",
                  tilt_of(cut[i]));
     }
@@ -301,7 +301,10 @@ static void script_write(struct figure *fig, const struct loss *l)
     const struct chart_axis y =
         chart_axis(0, fmax(l->most, 1), 5, "albedo", "1");
     bands_print(bsdf_bands(l->bsdf), names, sizeof names);
-    snprintf(below, sizeof below, "ωₒ at φ = %.6g°;  %s", l->phi_deg, names);
+    snprintf(below, sizeof below, "ωₒ at φ = %.6g°;  %s%s", l->phi_deg, names,
+             strstr(bsdf_spec(l->bsdf), "alpha_u=")
+                 ? ";  α the same along x and y"
+                 : "");
     snprintf(note, sizeof note,
              "circles: by quadrature; lines%s: mean weights of %llu samples, ± "
              "%.1g%s",
@@ -335,14 +338,13 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 {
     struct figure fig;
     struct loss *l = calloc(1, sizeof *l);
-    bool ok = l || err_set(err, "out of memory");
-    if (ok) {
-        l->bsdf = r->bsdf[0];
-        l->phi_deg = isnan(r->phi_deg) ? 0 : r->phi_deg;
-        l->seed = r->seed;
-        l->samples = (uint64_t)fmin(fmax((double)r->samples / 50, 1000), 1e5);
-        ok = loss_make(l, err) && figure_open(&fig, r->output, &r->look, err);
-    }
+    if (!l)
+        return err_set(err, "out of memory");
+    l->bsdf = r->bsdf[0];
+    l->phi_deg = isnan(r->phi_deg) ? 0 : r->phi_deg;
+    l->seed = r->seed;
+    l->samples = (uint64_t)fmin(fmax((double)r->samples / 50, 1000), 1e5);
+    bool ok = loss_make(l, err) && figure_open(&fig, r->output, &r->look, err);
     if (ok) {
         table_write(fig.table, l);
         script_write(&fig, l);

@@ -76,8 +76,9 @@ static void methods_set(struct swatches *s, const struct bands *asked)
         bool known = false;
         for (int k = 0; k < s->methods; k++)
             known |= s->method[k].way == COLOUR_FIXED &&
-                     memcmp(s->method[k].bands.nm, m.bands.nm,
-                            3 * sizeof(double)) == 0;
+                     s->method[k].bands.nm[0] == m.bands.nm[0] &&
+                     s->method[k].bands.nm[1] == m.bands.nm[1] &&
+                     s->method[k].bands.nm[2] == m.bands.nm[2];
         bands_print(&m.bands, m.name, sizeof m.name);
         if (!known)
             s->method[s->methods++] = m;
@@ -314,9 +315,10 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 {
     struct figure fig;
     struct swatches *s = calloc(1, sizeof *s);
-    bool ok = (s || err_set(err, "out of memory")) &&
-              swatches_make(s, r, err) &&
-              figure_open(&fig, r->output, &r->look, err);
+    if (!s)
+        return err_set(err, "out of memory");
+    bool ok =
+        swatches_make(s, r, err) && figure_open(&fig, r->output, &r->look, err);
     if (ok) {
         table_write(fig.table, s);
         script_write(&fig, s);
@@ -324,7 +326,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
                      "Colour of the reflectance under D65 against the angle of "
                      "incidence, of the whole spectrum and by each way to "
                      "three pairs of eta and k; CIEDE2000 from the former. "
-                     "Pages: ");
+                     "Pages:");
         ok = figure_draw(&fig, made, err);
     }
     free(s);

@@ -271,8 +271,9 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 {
     struct figure fig;
     struct comparison *c = calloc(1, sizeof *c);
-    bool ok = (c || err_set(err, "out of memory")) &&
-              comparison_make(c, r, err) &&
+    if (!c)
+        return err_set(err, "out of memory");
+    bool ok = comparison_make(c, r, err) &&
               figure_open(&fig, r->output, &r->look, err);
     if (ok) {
         polar_table(fig.table, &c->polar);
@@ -284,7 +285,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
                      "cut, albedos and their difference.");
         ok = figure_draw(&fig, made, err);
     }
-    for (int i = 0; c && i < 2; i++)
+    for (int i = 0; i < 2; i++)
         trace_clear(&c->trace[i]);
     free(c);
     return ok;

@@ -11,7 +11,8 @@
 #include "plots/text.h"
 
 enum { LINE_MAX = 100, LINES_MAX = 4, LINE_HEIGHT = 17 };
-enum { STYLE_MAX = 1 << 20 }; /* bytes */
+enum { STYLE_MAX = 1 << 20 };       /* bytes */
+static const double small_px = 9.5; /* pixels of small print */
 
 void figure_made_clear(struct figure_made *made)
 {
@@ -169,16 +170,17 @@ static double scale_of(const struct figure *fig)
 void figure_small(struct figure *fig, double x, double y, const char *text)
 {
     char *tex = fig->form->tex ? text_tex(text) : NULL, *sized = NULL;
-    const double pt = 9 * 9.5 / 12 * scale_of(fig);
+    const double pt = 0.75 * small_px * scale_of(fig);
     if (tex && asprintf(&sized, "\\fontsize{%.4g}{%.4g}\\selectfont %s", pt,
                         1.2 * pt, tex) < 0)
         sized = NULL;
     fputs("set label ", fig->script);
     gnuplot_string(fig->script, sized ? sized : text);
     fprintf(fig->script,
-            " at screen %.6g,%.6g left noenhanced font \",9.5\" tc rgb "
+            " at screen %.6g,%.6g left noenhanced font \",%.6g\" tc rgb "
             "\"#505050\"\n",
-            x / fig->width, y / fig->height);
+            x / fig->width, y / fig->height,
+            form_font(fig->form, small_px, scale_of(fig)));
     free(sized);
     free(tex);
 }

@@ -17,10 +17,10 @@ struct terminal {
 
 static const struct terminal terminals[] = {
     { { ".svg", false, "image pixels", "%.10g", "°" },
-      "svg size %.6g,%.6g noenhanced font \"sans-serif,12\" fontscale %.6g "
-      "linewidth %.6g background \"#ffffff\"",
+      "svg size %.6g,%.6g noenhanced font \"sans-serif,%.6g\" linewidth %.6g "
+      "background \"#ffffff\"",
       1,
-      1,
+      12, /* its scale of fonts would leave tics and their labels behind */
       1 },
     { { ".pdf", false, "image", "%.10g", "°" },
       "pdfcairo size %.6g,%.6g noenhanced font \"sans-serif,12\" fontscale "
@@ -76,6 +76,11 @@ void form_terminal(FILE *script, const struct form *form, double width,
                 9 * scale, 10.8 * scale);
 }
 
+double form_font(const struct form *form, double pixels, double scale)
+{
+    return form == &terminals[0].form ? pixels * scale : pixels;
+}
+
 /* A whole file, a 0 behind it; NULL and the reason. */
 static char *read_bytes(const char *path, size_t *size, struct err *err)
 {
@@ -108,7 +113,7 @@ static void date_fix(char *bytes, size_t size)
     static const char key[] = "/CreationDate (D:", date[] = "20000101000000";
     char *at = memmem(bytes, size, key, strlen(key));
     if (at && (size_t)(bytes + size - at) >= strlen(key) + strlen(date))
-        memcpy(at + strlen(key), date, strlen(date));
+        memcpy(at + sizeof key - 1, date, sizeof date - 1);
 }
 
 bool form_finish(const struct form *form, const char *path, struct err *err)

@@ -30,6 +30,9 @@ const struct form *form_of(const char *path, struct err *err);
 void form_terminal(FILE *script, const struct form *form, double width,
                    double height, double scale);
 
+/** The size that gnuplot is to be told for letters of so many pixels. */
+double form_font(const struct form *form, double pixels, double scale);
+
 /** What remains to be done to a picture that was drawn at a path: a PDF gets a
  * fixed date. */
 bool form_finish(const struct form *form, const char *path, struct err *err);

@@ -23,11 +23,11 @@
 #include "plots/kinds.h"
 #include "plots/table.h"
 
-enum { STEPS = 720, COLUMNS_MAX = BANDS_MAX };
+enum { STEPS = 360, COLUMNS_MAX = BANDS_MAX };
 
 /* An interface as light of one column meets it. */
 struct side {
-    char name[96];
+    char name[32], index[64];
     double eta, k;                     /* of what is beyond, relative */
     bool approximate;                  /* the write-up's form is for metals */
     double brewster_deg, critical_deg; /* NaN where there is none */
@@ -116,11 +116,11 @@ static void side_add(struct interface *f, double eta, double k,
                         .approximate = k > 0,
                         .brewster_deg = NAN,
                         .critical_deg = NAN };
+    snprintf(s->name, sizeof s->name, "%s", name);
     if (k > 0)
-        snprintf(s->name, sizeof s->name, "%s: n = %.4g, k = %.4g", name, eta,
-                 k);
+        snprintf(s->index, sizeof s->index, "n = %.4g, k = %.4g", eta, k);
     else
-        snprintf(s->name, sizeof s->name, "%s: n = %.6g", name, eta);
+        snprintf(s->index, sizeof s->index, "n = %.6g", eta);
     if (k > 0)
         s->brewster_deg = least_p_deg(s);
     else if (eta != 1)
@@ -133,7 +133,7 @@ static bool interface_of(struct interface *f, const struct bsdf *b,
                          struct err *err)
 {
     const struct bands *bands = bsdf_bands(b);
-    struct spectrum eta, k;
+    struct spectrum eta = { { 0 } }, k = { { 0 } };
     bool same = true;
     if (!bsdf_index(b, &eta, &k))
         return err_set(err,
@@ -166,10 +166,10 @@ static void table_write(FILE *out, struct interface *f, const struct bsdf *b)
     for (int i = 0; i < f->sides; i++) {
         const struct side *s = &f->side[i];
         fprintf(out,
-                "%s# %s\n# theta [deg]\ts [1]\tp [1]\tunpolarised [1]\t"
+                "%s# %s: %s\n# theta [deg]\ts [1]\tp [1]\tunpolarised [1]\t"
                 "write-up's approximation [1]\tSchlick's [1]\tthe former's "
                 "error [1]\tthe latter's error [1]\n",
-                i ? "\n\n" : "", s->name);
+                i ? "\n\n" : "", s->name, s->index);
         for (int k = 0; k <= STEPS; k++) {
             const double deg = 90. * k / STEPS;
             const double c = k == STEPS ? 0 : cos(deg * PI / 180);
@@ -244,7 +244,9 @@ static void column(struct figure *fig, const struct interface *f, int i,
         .marks = 2,
     };
     chart_column(&c, i, f->sides, true);
-    figure_label(fig, (c.x0 + c.x1) / 2, c.y1 + 34, "center", s->name);
+    figure_label(fig, (c.x0 + c.x1) / 2, c.y1 + 34 + CHART_NOTE, "center",
+                 s->name);
+    figure_label(fig, (c.x0 + c.x1) / 2, c.y1 + 34, "center", s->index);
     if (!isnan(s->brewster_deg))
         snprintf(mark[0].text, sizeof mark[0].text, "%s%.4g°",
                  f->sides > 3 ? ""
@@ -294,7 +296,7 @@ static void script_write(struct figure *fig, const struct interface *f,
     const double foot = 12 + 2 * CHART_NOTE;
     const double bottom = foot + rows * 20 + 14 + CHART_BELOW;
     bands_print(bsdf_bands(b), bands, sizeof bands);
-    figure_page(fig, FIGURE_PAGE, bottom + BELOW + 44 + PANEL + 54,
+    figure_page(fig, FIGURE_PAGE, bottom + BELOW + 44 + PANEL + 54 + CHART_NOTE,
                 bsdf_spec(b), bands);
     chart_notes(fig, foot - 2,
                 (const char *[]){ notes[0], notes[metal ? 1 : 2] }, 2);
@@ -307,7 +309,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
                 struct err *err)
 {
     struct figure fig;
-    struct interface f;
+    struct interface f = { .sides = 0 };
     if (!interface_of(&f, r->bsdf[0], err) ||
         !figure_open(&fig, r->output, &r->look, err))
         return false;

@@ -2,8 +2,9 @@
  *
  * Two panels share the axis of wavelengths.  A table's rows are points, and the
  * line between them is what its n and k are taken to be there; a formula is a
- * line.  Where bands are wavelengths these are marked; where they are R, G and
- * B of a single metal the three pairs that stand for it are marked at the edge.
+ * line.  What is between pages of one material is grey.  Where bands are
+ * wavelengths these are marked; where they are R, G and B of a single metal the
+ * three pairs that stand for it are marked at the edge.
  */
 #include "bsdf/ior.h"
 
@@ -27,7 +28,9 @@ struct curve {
     char name[128];
     double lo_nm, hi_nm; /* where it has n, and k if it has any */
     bool has_k;
-    int index[2]; /* of n and of k in the table; -1 where there are none */
+    int index[2];  /* of n and of k in the table; -1 where there are none */
+    int spread[2]; /* likewise, how pages of its material differ, which the
+                      first of them has */
 };
 
 struct span {
@@ -223,6 +226,73 @@ static void curve_comments(FILE *out, const struct curve *c, bool of_k)
     fprintf(out, "# vacuum wavelength [nm]\t%s [1]\n", of_k ? "k" : "n");
 }
 
+/* The material of a page, by its name or by its folder. */
+static void material_of(const struct curve *c, char *text, size_t size)
+{
+    const char *path = strchr(c->name, '.') ? ior_page_path(c->page) : c->name;
+    const char *end = strrchr(path, '/');
+    if (!strchr(c->name, '.') && strchr(c->name, '/'))
+        end = strchr(c->name, '/');
+    if (end && end - path > 3 && strncmp(end - 3, "/nk", 3) == 0)
+        end -= 3; /* as the database has it since 2024 */
+    const char *from = end ? end : path;
+    while (from > path && from[-1] != '/')
+        from--;
+    snprintf(text, size, "%.*s", (int)(end ? end - from : 0), from);
+}
+
+static bool same_material(const struct constants *all, int i, int k)
+{
+    char a[128], b[128];
+    material_of(&all->curve[i], a, sizeof a);
+    material_of(&all->curve[k], b, sizeof b);
+    return a[0] && strcmp(a, b) == 0;
+}
+
+/* How far the pages of one material are apart, where at least two have a value,
+ * as a block of wavelength, least and greatest. */
+static void spread_write(FILE *out, struct constants *all, int first, bool of_k,
+                         int *blocks)
+{
+    enum { POINTS = 200 };
+    struct curve *c = &all->curve[first];
+    char material[128];
+    int rows = 0;
+    c->spread[of_k] = -1;
+    for (int k = 0; k < first; k++)
+        if (same_material(all, k, first))
+            return;
+    material_of(c, material, sizeof material);
+    for (int i = 0; i <= POINTS; i++) {
+        const double nm = all->nm.lo + (all->nm.hi - all->nm.lo) * i / POINTS;
+        double least = INFINITY, most = -INFINITY;
+        int pages = 0;
+        for (int k = first; k < all->curves; k++) {
+            double value[2];
+            if (!same_material(all, first, k) ||
+                (of_k && !all->curve[k].has_k) ||
+                !ior_page_at(all->curve[k].page, nm, &value[0], &value[1],
+                             NULL))
+                continue;
+            least = fmin(least, value[of_k]);
+            most = fmax(most, value[of_k]);
+            pages++;
+        }
+        if (pages < 2)
+            continue;
+        if (rows++ == 0) {
+            fputs((*blocks)++ ? "\n\n" : "", out);
+            table_comment(out, "spread between pages of", material);
+            fprintf(out,
+                    "# vacuum wavelength [nm]\tleast %s [1]\tgreatest "
+                    "[1]\n",
+                    of_k ? "k" : "n");
+            c->spread[of_k] = *blocks - 1;
+        }
+        table_row(out, (double[]){ nm, least, most }, 3);
+    }
+}
+
 /* Writes all curves as blocks and notes what they reach. */
 static bool table_write(FILE *out, struct constants *all, struct err *err)
 {
@@ -251,6 +321,8 @@ static bool table_write(FILE *out, struct constants *all, struct err *err)
             }
             free(rows.at);
         }
+        for (int i = 0; i < all->curves; i++)
+            spread_write(out, all, i, of_k, &blocks);
         for (int b = 0; all->fitted && b < 3; b++) {
             reached.lo = fmin(reached.lo, all->three[of_k].band[b]);
             reached.hi = fmax(reached.hi, all->three[of_k].band[b]);
@@ -536,6 +608,13 @@ static void panel(struct figure *fig, const struct constants *all, bool of_k,
     band_lines(fig, all, !of_k);
     three_marks(fig, all, of_k, &a);
     fputs("plot ", out);
+    for (int i = 0; i < all->curves; i++)
+        if (all->curve[i].spread[of_k] >= 0)
+            fprintf(out,
+                    "%stable index %d using 1:($2/%.10g):($3/%.10g) with "
+                    "filledcurves fc rgb \"#d0d0d0\" fs solid 1 noborder",
+                    plots_made++ ? ", \\\n     " : "",
+                    all->curve[i].spread[of_k], a.unit, a.unit);
     for (int i = 0; i < all->curves; i++) {
         const struct curve *c = &all->curve[i];
         if (c->index[of_k] < 0)
@@ -557,7 +636,9 @@ static void panel(struct figure *fig, const struct constants *all, bool of_k,
 static void note_write(const struct constants *all, char *text, size_t size)
 {
     bool points = false, tables = false, formulas = false, negative = false;
+    bool spread = false;
     for (int i = 0; i < all->curves; i++) {
+        spread |= all->curve[i].spread[0] >= 0 || all->curve[i].spread[1] >= 0;
         formulas |= ior_page_formula(all->curve[i].page).number > 0;
         for (int of_k = 0; of_k < 2; of_k++) {
             const struct ior_table t = measured(&all->curve[i], of_k);
@@ -568,7 +649,7 @@ static void note_write(const struct constants *all, char *text, size_t size)
                             t.nm[k] <= all->nm.hi;
         }
     }
-    snprintf(text, size, "%s%s%s%s%s",
+    snprintf(text, size, "%s%s%s%s%s%s",
              points   ? "points: as published, lines: linear between them"
              : tables ? "lines: linear between published rows"
                       : "",
@@ -580,7 +661,8 @@ static void note_write(const struct constants *all, char *text, size_t size)
              !all->fitted                       ? ""
              : all->bands.kind == BANDS_RGB_FIT ? "(fit)"
                                                 : "(average)",
-             negative ? "; negative rows left out" : "");
+             negative ? "; negative rows left out" : "",
+             spread ? "; grey: between the pages of a material" : "");
 }
 
 static void title_write(const struct constants *all, char *text, size_t size)
@@ -646,7 +728,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
         script_write(&fig, &all);
         plot_caption(&fig, &plot_ior, r, r->pages,
                      "Index of refraction n and extinction coefficient k [1] "
-                     "against vacuum wavelength [nm]: ");
+                     "against vacuum wavelength [nm]. Pages:");
         ok = figure_draw(&fig, made, err);
     }
     if (ok && warning.text[0])

@@ -142,7 +142,7 @@ static void script_write(struct figure *fig, const struct matrix *m)
 {
     const double n = (double)m->rows.n;
     const double foot = 12, bottom = foot + 26 + CHART_BELOW;
-    const double right = FIGURE_PAGE - 124;
+    const double right = FIGURE_PAGE - 136;
     struct chart_curve curve[] = {
         { .block = 0,
           .x = "$1",
@@ -205,6 +205,7 @@ static void script_write(struct figure *fig, const struct matrix *m)
     c.x0 = c.x1 + 14;
     c.x1 = right;
     c.x = chart_axis_log(m->least, 1, "smallest scale", "1");
+    c.x.step = fmax(c.x.step, 3); /* it is narrow */
     c.bare_x = false;
     c.curve = &scale;
     c.curves = 1;
@@ -221,9 +222,10 @@ static bool run(const struct plot_request *r, struct figure_made *made,
     if (ok) {
         table_write(fig.table, &m);
         script_write(&fig, &m);
-        plot_caption(&fig, &plot_kill_matrix, r, NULL,
-                     "Known mistakes, which check fails for each, and the "
-                     "smallest share of the mistake at which one still does.");
+        plot_caption(
+            &fig, &plot_kill_matrix, r, r->file,
+            "Known mistakes, which check fails for each, and the "
+            "smallest share of the mistake at which one still does. File:");
         ok = figure_draw(&fig, made, err);
     }
     rows_clear(&m.rows);

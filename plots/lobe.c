@@ -107,9 +107,9 @@ enum { NOTE = sizeof((struct notes *)0)->text[0] };
 static void note_plane(struct notes *n, const struct polar *p)
 {
     const struct trace *l = p->trace;
-    bool incidence = true;
+    bool incidence = true; /* and positive toward the mirror direction */
     for (int i = 0; i < p->traces; i++)
-        incidence &= p->trace[i].incidence;
+        incidence &= p->trace[i].incidence && p->trace[i].wo_deg <= 0;
     if (incidence)
         snprintf(n->text[n->lines++], NOTE, "θᵢ: angle of ωᵢ to the normal; %s",
                  l->wo_deg == 0 && p->traces == 1
@@ -120,7 +120,8 @@ static void note_plane(struct notes *n, const struct polar *p)
         snprintf(n->text[n->lines++], NOTE,
                  "θᵢ: angle of ωᵢ to the normal in the plane of φ = %.6g°, "
                  "positive toward it%s",
-                 l->phi_deg, p->traces == 1 ? "; ωₒ is not in it" : "");
+                 l->phi_deg,
+                 p->traces == 1 && !l->incidence ? "; ωₒ is not in it" : "");
 }
 
 static struct notes notes_of(const struct polar *p)
@@ -231,8 +232,10 @@ static bool run(const struct plot_request *r, struct figure_made *made,
     struct figure fig;
     struct trace *t = calloc(POLAR_TRACES_MAX, sizeof *t);
     int n = 0;
-    bool ok = t || err_set(err, "out of memory");
-    if (ok && r->bsdfs * r->wos > POLAR_TRACES_MAX)
+    bool ok = true;
+    if (!t)
+        return err_set(err, "out of memory");
+    if (r->bsdfs * r->wos > POLAR_TRACES_MAX)
         ok = err_set(err,
                      "lobe: %d models from %d directions; expected at most %d "
                      "curves",

@@ -1,13 +1,4 @@
-/* lobe3d.c - the BSDF as a surface about the point that scatters
- *
- *   radius = f |cos theta_i| [1/sr] in every direction wi, one number for all
- *   bands: the luminance of R, G, B, or the mean of wavelengths.
- *
- * Each side of the surface has a mesh in theta_i and phi_i.  Its lines start
- * from a coarse grid and from angles ever closer to the peak, which pilot
- * directions find however narrow it is.  Intervals are halved until the chords
- * between neighbours are as good as the surface, everywhere along a line; then
- * lines that no chord needs are left out.
+/* lobe3d.c - the BSDF as a surface about the point that scatters, see surface.h
  */
 #include "plots/kinds.h"
 
@@ -18,293 +9,24 @@
 #include "plots/axis.h"
 #include "plots/colours.h"
 #include "plots/key.h"
-#include "plots/pilots.h"
+#include "plots/surface.h"
 #include "plots/table.h"
-
-enum { LINES_MAX = 512, QUADS_MAX = 9000, PASSES_MAX = 24, CLOSER = 26 };
-
-/* How far a chord may be from the surface, and how long it may be; both of the
- * largest radius of both sides. */
-static const double bend_max = 0.0015, chord_max = 0.06;
-static const double interval_min_deg = 1e-9;
-
-struct lines {
-    double deg[LINES_MAX];
-    size_t n;
-};
-
-struct peak {
-    double theta_deg, phi_deg; /* phi from that of the mirror direction */
-    double radius;
-};
-
-struct side {
-    double from_deg, to_deg; /* of theta */
-    struct peak peak;
-    struct lines theta, phi;
-};
-
-struct surface {
-    const struct bsdf *bsdf;
-    struct vec3 wo;
-    double mirror_phi_deg;
-    struct side side[2]; /* above and below */
-    struct pilots pilots;
-    size_t odd; /* directions where a value is not a finite number */
-};
-
-/* -- radii ----------------------------------------------------------------- */
-
-/* A direction from theta and from phi about the mirror direction. */
-static struct vec3 direction(const struct surface *s, double theta_deg,
-                             double phi_deg)
-{
-    return dir_from_degrees(theta_deg, phi_deg + s->mirror_phi_deg);
-}
-
-/* f |cos|, 0 where it is not a finite number. */
-static struct spectrum value(const struct surface *s, struct vec3 wi)
-{
-    const struct spectrum f =
-        spectrum_scale(fabs(wi.z), bsdf_eval(s->bsdf, s->wo, wi));
-    const int n = bsdf_bands(s->bsdf)->count;
-    for (int b = 0; b < n; b++)
-        if (!isfinite(f.band[b]))
-            return spectrum_of(n, 0);
-    return f;
-}
-
-static double radius(const struct surface *s, struct vec3 wi)
-{
-    return fmax(colours_mean(bsdf_bands(s->bsdf), value(s, wi)), 0);
-}
-
-static double radius_at(const struct surface *s, double theta_deg,
-                        double phi_deg)
-{
-    return radius(s, direction(s, theta_deg, phi_deg));
-}
-
-static double largest(const struct surface *s)
-{
-    return fmax(s->side[0].peak.radius, s->side[1].peak.radius);
-}
-
-/* -- the peak -------------------------------------------------------------- */
-
-static void peak_try(const struct surface *s, const struct side *side,
-                     struct peak *p, double theta_deg, double phi_deg)
-{
-    const double theta = fmin(fmax(theta_deg, side->from_deg), side->to_deg);
-    const double r = radius_at(s, theta, phi_deg);
-    if (r > p->radius)
-        *p = (struct peak){ theta, remainder(phi_deg, 360), r };
-}
-
-/* The best of a grid and of the pilots, then uphill by ever smaller steps. */
-static void peak_find(const struct surface *s, struct side *side)
-{
-    const double middle = (side->from_deg + side->to_deg) / 2;
-    struct peak p = { side->from_deg > 0 ? 180 : 0, 0, 0 };
-    for (int i = 0; i <= 45; i++)
-        for (int k = 0; k < 90; k++)
-            peak_try(s, side, &p, side->from_deg + 2 * i, 4 * k);
-    for (size_t i = 0; i < s->pilots.n; i++) {
-        const struct angles a = dir_to_degrees(s->pilots.wi[i]);
-        if ((a.theta_deg > 90) == (middle > 90))
-            peak_try(s, side, &p, a.theta_deg, a.phi_deg - s->mirror_phi_deg);
-    }
-    for (double step = 2; step > 1e-9;) {
-        const struct peak was = p;
-        const double across =
-            fmin(step / fmax(sin(was.theta_deg * PI / 180), 1e-6), 90);
-        peak_try(s, side, &p, was.theta_deg - step, was.phi_deg);
-        peak_try(s, side, &p, was.theta_deg + step, was.phi_deg);
-        peak_try(s, side, &p, was.theta_deg, was.phi_deg - across);
-        peak_try(s, side, &p, was.theta_deg, was.phi_deg + across);
-        if (!(p.radius > was.radius * (1 + 1e-12)))
-            step /= 2;
-    }
-    side->peak = p;
-}
-
-/* -- the mesh -------------------------------------------------------------- */
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static void lines_init(struct lines *l, double from, double to, double step,
-                       double peak)
-{
-    double all[LINES_MAX];
-    const int steps = (int)lround((to - from) / step);
-    size_t n = 0;
-    for (int i = 0; i <= steps; i++)
-        all[n++] = from + i * step;
-    all[n++] = peak;
-    for (int k = 1; k <= CLOSER; k++) {
-        all[n++] = peak - ldexp(90, -k);
-        all[n++] = peak + ldexp(90, -k);
-    }
-    qsort(all, n, sizeof *all, ascending);
-    l->n = 0;
-    for (size_t i = 0; i < n; i++)
-        if (all[i] >= from && all[i] <= to &&
-            (l->n == 0 || all[i] > l->deg[l->n - 1]))
-            l->deg[l->n++] = all[i];
-}
-
-/* Point k of a line of the mesh: theta is along[k] or across, phi the other. */
-static struct vec3 point(const struct surface *s, bool of_phi, double along,
-                         double across)
-{
-    const struct vec3 w =
-        of_phi ? direction(s, across, along) : direction(s, along, across);
-    return vec3_scale(radius(s, w), w);
-}
-
-static double apart(struct vec3 a, struct vec3 b)
-{
-    return vec3_length(vec3_add(a, vec3_scale(-1, b)));
-}
-
-/* How far a point is from the line between two others. */
-static double off_chord(struct vec3 p, struct vec3 a, struct vec3 b)
-{
-    const struct vec3 ab = vec3_add(b, vec3_scale(-1, a));
-    const struct vec3 ap = vec3_add(p, vec3_scale(-1, a));
-    const double length2 = vec3_dot(ab, ab);
-    const double t =
-        length2 > 0 ? fmin(fmax(vec3_dot(ap, ab) / length2, 0), 1) : 0;
-    return apart(ap, vec3_scale(t, ab));
-}
-
-/* Halves intervals of the lines wherever one across has a chord that is not
- * good enough; false when there was none. */
-static bool refine(const struct surface *s, struct lines *l,
-                   const struct lines *across, bool of_phi)
-{
-    const double scale = largest(s);
-    struct lines next = { .n = 0 };
-    for (size_t i = 0; i < l->n; i++) {
-        next.deg[next.n++] = l->deg[i];
-        if (i + 1 == l->n || next.n + (l->n - i) > LINES_MAX ||
-            !(l->deg[i + 1] - l->deg[i] > interval_min_deg))
-            continue;
-        const double x[3] = { l->deg[i], (l->deg[i] + l->deg[i + 1]) / 2,
-                              l->deg[i + 1] };
-        for (size_t k = 0; k < across->n; k++) {
-            struct vec3 p[3];
-            for (int j = 0; j < 3; j++)
-                p[j] = point(s, of_phi, x[j], across->deg[k]);
-            if (off_chord(p[1], p[0], p[2]) > bend_max * scale ||
-                apart(p[0], p[2]) > chord_max * scale) {
-                next.deg[next.n++] = x[1];
-                break;
-            }
-        }
-    }
-    const bool more = next.n > l->n;
-    *l = next;
-    return more;
-}
-
-/* Whether chords from line a to line b may replace all that is between. */
-static bool spare(const struct surface *s, const struct lines *l, size_t a,
-                  size_t b, const struct lines *across, bool of_phi,
-                  double slack)
-{
-    const double scale = largest(s) * slack;
-    for (size_t k = 0; k < across->n; k++) {
-        const struct vec3 p = point(s, of_phi, l->deg[a], across->deg[k]);
-        const struct vec3 q = point(s, of_phi, l->deg[b], across->deg[k]);
-        if (apart(p, q) > chord_max * scale)
-            return false;
-        for (size_t i = a + 1; i < b; i++)
-            if (off_chord(point(s, of_phi, l->deg[i], across->deg[k]), p, q) >
-                bend_max * scale)
-                return false;
-    }
-    return true;
-}
-
-static void prune(const struct surface *s, struct lines *l,
-                  const struct lines *across, bool of_phi, double keep,
-                  double slack)
-{
-    struct lines kept = { .n = 0 };
-    size_t last = 0;
-    kept.deg[kept.n++] = l->deg[0];
-    for (size_t i = 1; i + 1 < l->n; i++)
-        if (l->deg[i] == keep ||
-            !spare(s, l, last, i + 1, across, of_phi, slack)) {
-            last = i;
-            kept.deg[kept.n++] = l->deg[i];
-        }
-    kept.deg[kept.n++] = l->deg[l->n - 1];
-    *l = kept;
-}
-
-static void mesh(const struct surface *s, struct side *side)
-{
-    struct lines *theta = &side->theta, *phi = &side->phi;
-    const struct peak *p = &side->peak;
-    lines_init(theta, side->from_deg, side->to_deg, 5, p->theta_deg);
-    lines_init(phi, -180, 180, 10, p->phi_deg);
-    for (int pass = 0; pass < PASSES_MAX; pass++) {
-        const bool more = refine(s, theta, phi, false);
-        if (!refine(s, phi, theta, true) && !more)
-            break;
-    }
-    for (double slack = 1; slack < 8; slack *= 1.25) {
-        prune(s, theta, phi, false, p->theta_deg, slack);
-        prune(s, phi, theta, true, p->phi_deg, slack);
-        if (theta->n * phi->n <= QUADS_MAX)
-            break;
-    }
-}
-
-static bool present(const struct side *side)
-{
-    return side->peak.radius > 0;
-}
-
-static void count_odd(struct surface *s)
-{
-    const int n = bsdf_bands(s->bsdf)->count;
-    for (int below = 0; below < 2; below++) {
-        const struct side *side = &s->side[below];
-        for (size_t i = 0; i < side->theta.n; i++)
-            for (size_t k = 0; k < side->phi.n; k++) {
-                const struct spectrum f = bsdf_eval(
-                    s->bsdf, s->wo,
-                    direction(s, side->theta.deg[i], side->phi.deg[k]));
-                bool odd = false;
-                for (int b = 0; b < n; b++)
-                    odd |= !isfinite(f.band[b]);
-                s->odd += odd;
-            }
-    }
-}
 
 /* -- the table ------------------------------------------------------------- */
 
 static void side_write(FILE *out, const struct surface *s,
-                       const struct side *side)
+                       const struct surface_side *side)
 {
     const struct bands *bands = bsdf_bands(s->bsdf);
     const size_t n = (size_t)bands->count;
     for (size_t i = 0; i < side->theta.n; i++) {
         for (size_t k = 0; k < side->phi.n; k++) {
             const struct vec3 wi =
-                direction(s, side->theta.deg[i], side->phi.deg[k]);
-            const struct spectrum f = value(s, wi);
+                surface_direction(s, side->theta.deg[i], side->phi.deg[k]);
+            const struct spectrum f = surface_value(s, wi);
             double row[3 + BANDS_MAX] = { side->theta.deg[i],
                                           side->phi.deg[k] + s->mirror_phi_deg,
-                                          radius(s, wi) };
+                                          surface_mean(s, wi) };
             memcpy(row + 3, f.band, n * sizeof *row);
             table_row(out, row, 3 + n);
         }
@@ -328,7 +50,7 @@ static void table_write(FILE *out, const struct surface *s)
     table_columns(out, bands, "f |cos theta_i| [1/sr]");
     fputc('\n', out);
     for (int below = 0; below < 2; below++)
-        if (present(&s->side[below])) {
+        if (surface_present(&s->side[below])) {
             fprintf(out, "%s# %s the surface, a block for each theta_i\n",
                     blocks++ ? "\n\n" : "", below ? "below" : "above");
             side_write(out, s, &s->side[below]);
@@ -372,15 +94,25 @@ struct scale {
     double step, unit; /* [1/sr] between rings, and that they are written in */
     double reach;      /* of the last ring [1/sr] */
     int steps;
+    bool log;
+    int decade; /* of the last ring, with logarithms */
     char unit_text[32];
 };
 
 static struct scale scale_of(const struct surface *s)
 {
-    const double most = largest(s);
+    const double most = surface_largest(s);
     struct scale c = { .step = 1, .unit = 1, .reach = 1, .steps = 1 };
     if (!(most > 0))
         return c;
+    if (s->top > 0) { /* a ring a decade */
+        c.steps = SURFACE_DECADES;
+        c.reach = s->top;
+        c.decade = (int)lround(log10(s->top));
+        c.log = true;
+        axis_unit(c.unit_text, sizeof c.unit_text, 0, "1/sr");
+        return c;
+    }
     c.step = axis_step(most, 5);
     c.steps = (int)ceil(most / c.step * (1 - 1e-12));
     c.reach = c.step * c.steps;
@@ -414,7 +146,7 @@ static void arrows(FILE *out, const struct surface *s, const struct scale *c,
     const struct vec3 both[] = { mirror, s->wo };
     if ((s->wo.z < 0) == below)
         for (int i = 0; i < 2; i++) {
-            const double from = radius(s, both[i]) / c->reach;
+            const double from = surface_radius(s, both[i]) / c->reach;
             const double to = fmax(1.1, from + 0.15);
             arrow(out, placed(s, both[i], i ? from : fmax(from, to - 0.18)),
                   placed(s, both[i], to), i ? key_wo : key_mirror);
@@ -445,14 +177,15 @@ static bool covered(const struct surface *s, const struct scale *c,
 {
     const double wide = 24, high = 10;
     for (int below = 0; below < 2; below++) {
-        const struct side *side = &s->side[below];
+        const struct surface_side *side = &s->side[below];
         for (size_t i = 0; i < side->theta.n; i++)
             for (size_t k = 0; k < side->phi.n; k++) {
                 const double theta = side->theta.deg[i];
                 const double phi = side->phi.deg[k];
-                const struct pixel p =
-                    seen(vec3_scale(radius_at(s, theta, phi) / c->reach,
-                                    dir_from_degrees(theta, phi)));
+                const struct pixel p = seen(vec3_scale(
+                    surface_radius(s, surface_direction(s, theta, phi)) /
+                        c->reach,
+                    dir_from_degrees(theta, phi)));
                 if (fabs(p.x - at.x) < wide && fabs(p.y - at.y) < high)
                     return true;
             }
@@ -492,6 +225,20 @@ static double numbered_spoke(const struct surface *s, const struct scale *c)
     return nearest;
 }
 
+static void ring_number(const struct scale *c, int ring, char *text,
+                        size_t size)
+{
+    const int e = c->decade - c->steps + ring;
+    if (!c->log) {
+        snprintf(text, size, "%g", ring * c->step / c->unit);
+    } else if (e == 0) {
+        snprintf(text, size, "1");
+    } else {
+        axis_unit(text, size, e, "");
+        text[strcspn(text, " ")] = '\0';
+    }
+}
+
 /* Names of azimuths, and numbers of rings. */
 static void plane_labels(struct figure *fig, const struct surface *s,
                          const struct scale *c)
@@ -506,14 +253,16 @@ static void plane_labels(struct figure *fig, const struct surface *s,
                             colour);
         }
     }
-    if (!(largest(s) > 0))
+    if (!(surface_largest(s) > 0))
         return;
     const double spoke = numbered_spoke(s, c);
     for (int i = 1; i <= c->steps; i++) {
         char text[64];
         const struct vec3 at = on_plane((double)i / c->steps, spoke);
-        snprintf(text, sizeof text, i < c->steps ? "%g" : "%g [%s]",
-                 i * c->step / c->unit, c->unit_text);
+        char number[32];
+        ring_number(c, i, number, sizeof number);
+        snprintf(text, sizeof text, i < c->steps ? "%s" : "%s [%s]", number,
+                 c->unit_text);
         figure_label_at(fig, text, "%.6g,%.6g,0 center offset 0,-0.7 %s", at.x,
                         at.y, colour);
     }
@@ -551,24 +300,26 @@ static void plane(FILE *out, const struct surface *s, const struct scale *c,
 
 /* How wide a lobe is where it has fallen to half of its peak, across the
  * direction where it is narrower [px]. */
-static double lobe_width(const struct surface *s, const struct side *side,
-                         const struct scale *c)
+static double lobe_width(const struct surface *s,
+                         const struct surface_side *side, const struct scale *c)
 {
-    const struct peak *p = &side->peak;
-    const struct vec3 top = direction(s, p->theta_deg, p->phi_deg);
-    const struct vec3 down = direction(s, p->theta_deg + 90, p->phi_deg);
+    const struct surface_peak *p = &side->peak;
+    const struct vec3 top = surface_direction(s, p->theta_deg, p->phi_deg);
+    const struct vec3 down =
+        surface_direction(s, p->theta_deg + 90, p->phi_deg);
     const struct vec3 way[2] = { down, vec3_cross(top, down) };
+    const double peak = surface_radius(s, top);
     double narrow = 1;
     for (int k = 0; k < 2; k++)
         for (double a = 1e-4; a < narrow; a *= 1.1) {
             const struct vec3 along = vec3_scale(cos(a), top);
             const struct vec3 by = vec3_scale(sin(a), way[k]);
-            if (fmax(radius(s, vec3_add(along, by)),
-                     radius(s, vec3_add(along, vec3_scale(-1, by)))) <
-                p->radius / 2)
+            if (fmax(surface_radius(s, vec3_add(along, by)),
+                     surface_radius(s, vec3_add(along, vec3_scale(-1, by)))) <
+                peak / 2)
                 narrow = a;
         }
-    return 2 * sin(narrow) * p->radius / 2 / c->reach * RADIUS;
+    return sin(narrow) * peak / c->reach * RADIUS;
 }
 
 /* The lines of the mesh are drawn where there is room for them.  Where there is
@@ -579,28 +330,27 @@ static void lobe(FILE *out, const struct surface *s, const struct scale *c,
                  bool below)
 {
     const double room = 24;
-    const struct side *side = &s->side[below];
-    const int index = below && present(&s->side[0]) ? 1 : 0;
+    const struct surface_side *side = &s->side[below];
+    const int index = below && surface_present(&s->side[0]) ? 1 : 0;
     fprintf(out, "\n# %s the surface\n", below ? "below" : "above");
     arrows(out, s, c, below);
-    if (present(side))
+    if (surface_present(side))
         fprintf(out,
                 "set pm3d %s\n"
                 "splot table index %d using "
-                "($3/%.10g*sin($1)*cos($2-(%.10g))):"
-                "($3/%.10g*sin($1)*sin($2-(%.10g))):($3/%.10g*cos($1)):"
-                "($3/%.10g) with pm3d\n",
+                "(r($3)*sin($1)*cos($2-(%.10g))):"
+                "(r($3)*sin($1)*sin($2-(%.10g))):(r($3)*cos($1)):"
+                "(colour($3)) with pm3d\n",
                 lobe_width(s, side, c) > room
                     ? "depthorder border lc rgb \"#80000000\" lw 0.15"
                     : "scansautomatic border retrace lw 0.3",
-                index, c->reach, s->mirror_phi_deg, c->reach, s->mirror_phi_deg,
-                c->reach, c->unit);
+                index, s->mirror_phi_deg, s->mirror_phi_deg);
     else /* for the arrows and labels */
         fputs("splot '+' using (0):(0):(0) every ::0::0 with dots lc rgb "
               "\"#b8b8b8\"\n",
               out);
     fprintf(out, "unset arrow; unset label%s\n",
-            present(side) ? "; unset colorbox" : "");
+            surface_present(side) ? "; unset colorbox" : "");
 }
 
 /* From 0 up to 360, to as many digits as are written. */
@@ -621,20 +371,21 @@ static struct notes notes_of(const struct surface *s)
     enum { SIZE = sizeof((struct notes *)0)->text[0] };
     const struct bands *bands = bsdf_bands(s->bsdf);
     struct notes n = { .lines = 0 };
-    if (largest(s) > 0)
+    if (surface_largest(s) > 0)
         snprintf(n.text[n.lines++], SIZE,
-                 "radius and colour: f |cos θᵢ|, %s; the same scale along all "
-                 "axes",
-                 colours_mean_name(bands));
+                 "radius and colour: f |cos θᵢ|, %s; %s",
+                 colours_mean_name(bands),
+                 s->top > 0 ? "logarithmic, in the middle all that is less"
+                            : "the same scale along all axes");
     for (int below = 0; below < 2; below++)
-        if (present(&s->side[below])) {
-            const struct peak *p = &s->side[below].peak;
+        if (surface_present(&s->side[below])) {
+            const struct surface_peak *p = &s->side[below].peak;
             const double phi = named_phi(s, p->phi_deg);
             const bool pole = p->theta_deg == 0 || p->theta_deg == 180;
             int used =
                 snprintf(n.text[n.lines++], SIZE,
                          "maximum %s the surface: %.5g/sr at θᵢ = %.5g°",
-                         below ? "below" : "above", p->radius, p->theta_deg);
+                         below ? "below" : "above", p->mean, p->theta_deg);
             if (!pole)
                 snprintf(n.text[n.lines - 1] + used, SIZE - (size_t)used,
                          ", φᵢ = %.5g°", phi);
@@ -666,14 +417,45 @@ static void colour_bar(struct figure *fig, const struct scale *c, double centre)
 {
     char text[64];
     const double from = centre - 60, to = centre + 160;
-    fprintf(fig->script,
+    FILE *out = fig->script;
+    fprintf(out,
             "set colorbox vertical user origin screen %.6g,%.6g size screen "
             "%.6g,%.6g border\n"
-            "set cbtics scale 0.5 %.10g format \"%s\"\n",
+            "set cbtics scale 0.5 ",
             BAR / fig->width, from / fig->height, 14 / fig->width,
-            (to - from) / fig->height, c->step / c->unit, fig->form->number);
+            (to - from) / fig->height);
+    if (!c->log)
+        fprintf(out, "%.10g format \"%s\"\n", c->step / c->unit,
+                fig->form->number);
+    for (int i = 0; c->log && i <= c->steps; i++) {
+        ring_number(c, i, text, sizeof text);
+        fputs(i ? ", " : "(", out);
+        figure_text(fig, text);
+        fprintf(out, " 1e%d%s", c->decade - c->steps + i,
+                i < c->steps ? "" : ")\n");
+    }
     snprintf(text, sizeof text, "f |cos θᵢ| [%s]", c->unit_text);
     figure_label(fig, BAR + 20, to + 22, "center", text);
+}
+
+/* What a value is drawn as: its radius, of which 1 is the last ring, and its
+ * colour. */
+static void functions(FILE *out, const struct scale *c)
+{
+    const double least = c->reach * pow(10, -c->steps);
+    if (c->log)
+        fprintf(out,
+                "set logscale cb; set cbrange [%.10g:%.10g]\n"
+                "r(x) = x > %.10g ? 1 + log10(x/%.10g)/%d : 0\n"
+                "colour(x) = x > %.10g ? x : %.10g\n",
+                least * (1 - 1e-6), c->reach * (1 + 1e-6), least, c->reach,
+                c->steps, least, least);
+    else
+        fprintf(out,
+                "set cbrange [0:%.10g]\n"
+                "r(x) = x/%.10g\n"
+                "colour(x) = x/%.10g\n",
+                c->reach / c->unit, c->reach, c->unit);
 }
 
 static void script_write(struct figure *fig, const struct surface *s)
@@ -682,7 +464,7 @@ static void script_write(struct figure *fig, const struct surface *s)
     const struct scale c = scale_of(s);
     const struct angles wo = dir_to_degrees(s->wo);
     const struct notes notes = notes_of(s);
-    const bool back = present(&s->side[1]) || s->wo.z < 0 ||
+    const bool back = surface_present(&s->side[1]) || s->wo.z < 0 ||
                       (s->pilots.deltas > 0 &&
                        s->pilots.delta[s->pilots.deltas - 1].wi.z < 0);
     const double foot = 12 + notes.lines * LINE, key_y = foot + 14;
@@ -709,10 +491,10 @@ static void script_write(struct figure *fig, const struct surface *s)
             "set xyplane at %g\n"
             "set view %g,%g\n"
             "set view equal xyz\n"
-            "set palette @heat\n"
-            "set cbrange [0:%.10g]\n",
-            lowest, lowest, view_down_deg, view_turn_deg, c.reach / c.unit);
-    if (largest(s) > 0)
+            "set palette @heat\n",
+            lowest, lowest, view_down_deg, view_turn_deg);
+    functions(out, &c);
+    if (surface_largest(s) > 0)
         colour_bar(fig, &c, centre);
     else
         fputs("unset colorbox\n", out);
@@ -724,30 +506,16 @@ static void script_write(struct figure *fig, const struct surface *s)
 
 /* -- all of it ------------------------------------------------------------- */
 
-static bool surface_init(struct surface *s, const struct plot_request *r,
-                         struct err *err)
+static bool nothing(const struct surface *s, struct err *err)
 {
-    const struct angles wo = dir_to_degrees(r->wo[0]);
-    s->bsdf = r->bsdf[0];
-    s->wo = r->wo[0];
-    s->mirror_phi_deg =
-        hypot(r->wo[0].x, r->wo[0].y) > 0 ? wo.phi_deg + 180 : 0;
-    if (s->mirror_phi_deg > 180)
-        s->mirror_phi_deg -= 360;
-    s->side[0] = (struct side){ .from_deg = 0, .to_deg = 90 };
-    s->side[1] = (struct side){ .from_deg = 90, .to_deg = 180 };
-    pilots_draw(&s->pilots, r->bsdf[0], r->wo[0], r->seed);
-    for (int below = 0; below < 2; below++)
-        peak_find(s, &s->side[below]);
-    for (int below = 0; below < 2; below++)
-        if (present(&s->side[below]))
-            mesh(s, &s->side[below]);
-    count_odd(s);
-    return largest(s) > 0 || s->pilots.deltas > 0 ||
-           err_set(err,
-                   "lobe3d: f is not above 0 anywhere for theta %.6g, phi %.6g "
-                   "deg; there is nothing to draw",
-                   wo.theta_deg, wo.phi_deg);
+    const struct angles wo = dir_to_degrees(s->wo);
+    if (surface_largest(s) > 0 || s->pilots.deltas > 0)
+        return false;
+    err_set(err,
+            "lobe3d: f is not above 0 anywhere for theta %.6g, phi %.6g deg; "
+            "there is nothing to draw",
+            wo.theta_deg, wo.phi_deg);
+    return true;
 }
 
 static bool run(const struct plot_request *r, struct figure_made *made,
@@ -757,8 +525,9 @@ static bool run(const struct plot_request *r, struct figure_made *made,
     struct surface *s = calloc(1, sizeof *s);
     if (!s)
         return err_set(err, "out of memory");
+    surface_make(s, r->bsdf[0], r->wo[0], r->log, r->seed);
     const bool ready =
-        surface_init(s, r, err) && figure_open(&fig, r->output, &r->look, err);
+        !nothing(s, err) && figure_open(&fig, r->output, &r->look, err);
     bool ok = ready;
     if (ready) {
         table_write(fig.table, s);
@@ -775,6 +544,6 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 const struct plot plot_lobe3d = {
     .name = "lobe3d",
     .about = "f |cos| over all directions, as a surface",
-    .heeds = HEEDS_WO,
+    .heeds = HEEDS_WO | HEEDS_LOG,
     .run = run,
 };

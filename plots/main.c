@@ -315,6 +315,12 @@ static bool fits(const struct plot *plot, const struct request *r,
     if (r->args - 1 > most)
         return err_set(err, "\"%.200s\" is one argument too many",
                        r->arg[1 + most]);
+    if (plot->extension &&
+        (p->look.width_mm > 0 || p->look.style || p->look.window))
+        return err_set(err,
+                       "%s: it makes no single picture; --width, --style and "
+                       "--interactive are for those that do",
+                       plot->name);
     for (int i = 0; i < HEEDED; i++) {
         if (!(given & ~plot->heeds & heeded[i].bit))
             continue;

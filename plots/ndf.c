@@ -24,7 +24,7 @@ struct shown {
     struct bsdf *made[FACETS_MAX]; /* owned */
     int n;
     double phi_deg;
-    double d_most, d_least, lambda_most, lambda_least;
+    double d_most, d_least, g1_most, lambda_most, lambda_least;
     double theta_deg; /* as far as D is worth drawing */
 };
 
@@ -98,6 +98,8 @@ static void table_write(FILE *out, struct shown *s, const struct bsdf *b)
             const double row[] = {
                 deg, d, d * w.z, g1, lambda, near, bsdf_facet_d(f, at(s, near))
             };
+            if (isfinite(g1)) /* a faulty one exceeds 1 */
+                s->g1_most = fmax(s->g1_most, g1);
             if (deg < 89.5)
                 s->lambda_most = fmax(s->lambda_most, lambda);
             if (lambda > 0 && deg > 10)
@@ -161,7 +163,7 @@ static void script_write(struct figure *fig, const struct shown *s,
     panel(fig, s, 1, upper, "$1", "$2", whole,
           chart_axis_log(s->d_least, s->d_most, "D", "1/sr"));
     panel(fig, s, 0, lower, "$1", "$4", whole,
-          chart_axis_exact(0, 1, 0.2, "G1", "1"));
+          chart_axis(0, fmax(s->g1_most, 1), 5, "G1", "1"));
     panel(fig, s, 1, lower, "$1", "$5", whole,
           chart_axis_log(s->lambda_least, s->lambda_most, "Λ", "1"));
 }

@@ -242,9 +242,9 @@ static bool run(const struct plot_request *r, struct figure_made *made,
     if (ok) {
         table_write(fig.table, &s, r->file);
         script_write(&fig, &s, r->file);
-        plot_caption(&fig, &plot_p_values, r, NULL,
+        plot_caption(&fig, &plot_p_values, r, r->file,
                      "Empirical distribution of p-values against the uniform "
-                     "one, and the difference.");
+                     "one, and the difference. File:");
         ok = figure_draw(&fig, made, err);
     }
     for (int i = 0; i < s.n; i++)

@@ -144,7 +144,8 @@ static void grid(struct figure *fig, bool half)
                             1.19 * c);
         else
             figure_label_at(fig, text, "%.6g,%.6g %s tc rgb \"#505050\"",
-                            1.1 * s, 1.12 * c, s < 0 ? "right" : "left");
+                            (fabs(c) < 0.1 ? 1.1 : 1.14) * s, 1.15 * c,
+                            s < 0 ? "right" : "left");
     }
 }
 

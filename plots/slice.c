@@ -211,17 +211,16 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 {
     struct figure fig;
     struct slice *s = calloc(1, sizeof *s);
-    bool ok = s || err_set(err, "out of memory");
-    if (ok) {
-        s->bsdf = r->bsdf[0];
-        s->phi_deg = isnan(r->phi_deg) ? 90 : r->phi_deg;
-        fill(s);
-        ok = s->most > 0 ||
-             err_set(err,
-                     "slice: %s reflects nothing but single directions, so "
-                     "there is nothing to draw",
-                     bsdf_type(s->bsdf)->name);
-    }
+    if (!s)
+        return err_set(err, "out of memory");
+    s->bsdf = r->bsdf[0];
+    s->phi_deg = isnan(r->phi_deg) ? 90 : r->phi_deg;
+    fill(s);
+    bool ok = s->most > 0 ||
+              err_set(err,
+                      "slice: %s reflects nothing but single directions, so "
+                      "there is nothing to draw",
+                      bsdf_type(s->bsdf)->name);
     ok = ok && figure_open(&fig, r->output, &r->look, err);
     if (ok) {
         table_write(fig.table, s);

@@ -184,7 +184,7 @@ void trace_write(FILE *out, const struct trace *l)
     const struct bands *bands = bsdf_bands(l->bsdf);
     const size_t n = (size_t)l->bands;
     table_head(out, l->bsdf, l->wo);
-    if (l->incidence)
+    if (l->incidence && l->wo_deg <= 0)
         fprintf(out,
                 "# theta_i: of wi to the normal, in the plane of incidence; "
                 "%s\n",

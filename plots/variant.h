@@ -2,10 +2,10 @@
 #ifndef PLOTS_VARIANT_H
 #define PLOTS_VARIANT_H
 
+#include <stdint.h>
+
 #include "bsdf/bsdf.h"
 #include "validate/estimate.h"
-
-#include <stdint.h>
 
 struct variant {
     const char *key, *value; /* NULL: without it */

@@ -34,6 +34,8 @@ sample swallows a NaN|validate/check_sample.c|test_checks|s/ \&\& !isnan(off))/)
 reciprocity swallows a NaN|validate/check_reciprocity.c|test_checks|s/ \&\& !isnan(x + y))/)/; s/ \&\& !isnan(off))/)/
 energy swallows a NaN|validate/check_energy.c|test_checks|s/isnan(albedo\.value) || //; s/if (!(albedo\.error <= v->error))/if (albedo.error > v->error)/; s/if (!(e->unsampled\.value - e->unsampled\.error <= error_limit))/if (e->unsampled.value - e->unsampled.error > error_limit)/
 stray samples are forgotten|validate/check_chi2.c|test_decisions|s/survey->stray > 0 || /0 || /
+ridges are not followed|validate/quadrature.c|test_masses|s/ \&\& follow(&w);/;/
+hints of a quadrature are forgotten|validate/quadrature.c|test_masses|s/if (l->hint\[i\]\.height > least)/if (l->hint[i].height > INFINITY)/
 Bonferroni is forgotten|validate/run.c|test_statistics|s/significance \/ (double)(n - i)/significance/
 END
 }

@@ -1,4 +1,4 @@
-/* test_cli.c - the programs as a user meets them, and the README's tour
+/* test_cli.c - the programs as a user meets them
  *
  * The programs are in the folder that BIN names, build/bin by default; the
  * tests run in the root of the repository and write only into a folder of
@@ -310,58 +310,6 @@ static void a_report_is_whole_or_not_there(void **state)
         sh("bsdf-validate diffuse --samples 1e3 >/dev/full 2>/dev/null"), 2);
 }
 
-/* The README's tour, and what follows on a BSDF of one's own and on reports:
- * the commands of the sh blocks run in a folder that has build/bin and bsdf/
- * alone, and each line of the text blocks is a line they printed. */
-static void the_readmes_tour_runs(void **state)
-{
-    (void)state;
-    FILE *readme = fopen("README.md", "r");
-    assert_non_null(readme);
-    char line[1024], path[4200];
-    snprintf(path, sizeof path, "%s/tour.sh", folder);
-    FILE *script = fopen(path, "w");
-    snprintf(path, sizeof path, "%s/expected", folder);
-    FILE *expected = fopen(path, "w");
-    assert_true(script && expected);
-    bool tour = false;
-    int commands = 0, lines = 0;
-    FILE *into = NULL;
-    while (fgets(line, sizeof line, readme)) {
-        if (strncmp(line, "## ", 3) == 0)
-            tour = strstr(line, "tour") || strstr(line, "Your own BSDF") ||
-                   strstr(line, "Reports");
-        if (strncmp(line, "```", 3) == 0) {
-            into = !tour || into                    ? NULL
-                   : strcmp(line, "```sh\n") == 0   ? script
-                   : strcmp(line, "```text\n") == 0 ? expected
-                                                    : NULL;
-            continue;
-        }
-        if (into && strcmp(line, "...\n") != 0 && line[0] != '\n') {
-            fputs(line, into);
-            commands += into == script;
-            lines += into == expected;
-        }
-    }
-    fclose(readme);
-    assert_int_equal(fclose(script) | fclose(expected), 0);
-    assert_true(commands >= 5 && lines >= 5);
-    char command[8500];
-    snprintf(command, sizeof command,
-             "mkdir -p $T/empty/build && ln -s %s $T/empty/build/bin && "
-             "ln -s \"$PWD/bsdf\" $T/empty/bsdf && cd $T/empty && sh -e "
-             "$T/tour.sh >$T/printed 2>&1",
-             bin);
-    if (sh(command) != 0) {
-        sh("tail -n 20 $T/printed");
-        fail_msg("the tour failed: %s", output);
-    }
-    if (sh("grep -vxFf $T/printed $T/expected") != 1)
-        fail_msg("the README shows what the tour did not print:\n%s", output);
-    assert_int_equal(sh("ls $T/empty/build/tour/*.svg"), 0);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -389,7 +337,6 @@ int main(void)
         { "validate says sound or not", validate_says_sound_or_not },
         { "a verdict can be replayed alone", a_verdict_can_be_replayed_alone },
         { "a report is whole or not there", a_report_is_whole_or_not_there },
-        { "the README's tour runs in an empty folder", the_readmes_tour_runs },
     };
     return cmocka_run_group_tests_name("cli", tests, setup, teardown);
 }

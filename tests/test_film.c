@@ -235,19 +235,46 @@ static void what_cannot_be_written_is_named(void **state)
     film_free(f);
 }
 
-/* A note that the format keeps for itself: nothing is written. */
+/* Notes that the format keeps for itself, or that are too long for it: nothing
+ * is written. */
 static void a_failure_leaves_what_was_there(void **state)
 {
-    static const struct film_note bad[] = { { "channels", "x" },
-                                            { NULL, NULL } };
+    char longest[300];
+    const struct film_note bad[][2] = { { { "channels", "x" } },
+                                        { { "", "x" } },
+                                        { { longest, "x" } } };
     struct film *f = random_film(5, 5, 8);
     struct err err;
     char path[64];
     (void)state;
+    memset(longest, 'n', sizeof longest - 1);
+    longest[sizeof longest - 1] = 0;
     snprintf(path, sizeof path, "%s/old.exr", folder);
     write_or_fail(f, path);
-    assert_false(film_write_exr(f, path, bad, &err));
-    assert_has(err.text, path);
+    for (size_t i = 0; i < 3; i++) {
+        assert_false(film_write_exr(f, path, bad[i], &err));
+        assert_has(err.text, path);
+        struct film *g = read_or_fail(path);
+        assert_same(f, g);
+        film_free(g);
+    }
+    film_free(f);
+}
+
+static void notes_may_be_empty_or_have_long_names(void **state)
+{
+    static const struct film_note odd[] = {
+        { "empty", "" },
+        { "a_name_of_more_than_thirty_one_letters", "x" },
+        { NULL, NULL }
+    };
+    struct film *f = random_film(5, 5, 8);
+    struct err err = { "" };
+    char path[64];
+    (void)state;
+    snprintf(path, sizeof path, "%s/notes.exr", folder);
+    if (!film_write_exr(f, path, odd, &err))
+        fail_msg("%s", err.text);
     struct film *g = read_or_fail(path);
     assert_same(f, g);
     film_free(f);
@@ -438,7 +465,8 @@ static void pictures_of_another_nature_are_refused(void **state)
         { { .type = EXR_PIXEL_FLOAT, .cropped = true },
           "not the display window" },
         { { .type = EXR_PIXEL_FLOAT, .half_count = true },
-          "channel count is of half, expected 32-bit whole numbers" },
+          "channel count is of half, expected 32-bit whole "
+          "numbers or float" },
     };
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -706,6 +734,8 @@ int main(void)
         { "what cannot be written is named, and why",
           what_cannot_be_written_is_named },
         { "a failure leaves what was there", a_failure_leaves_what_was_there },
+        { "notes may be empty or have long names",
+          notes_may_be_empty_or_have_long_names },
         { "other pictures in scan lines are read",
           other_pictures_in_lines_are_read },
         { "pictures of another nature are refused",

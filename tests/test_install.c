@@ -72,9 +72,35 @@ static void install_fills_a_prefix(void **state)
          "]");
     prints("cd $T/usr && ls lib lib/pkgconfig",
            "lib:\nlibbsdf.a\npkgconfig\n\nlib/pkgconfig:\nlibbsdf.pc\n");
-    does("diff -r data $T/usr/share/bsdf/data");
+    /* The mesh of a scene in place of the program that makes it. */
+    does("diff -r -x 'knot.*' data $T/usr/share/bsdf/data && "
+         "test -s $T/usr/share/bsdf/data/scenes/knot.ply && "
+         "test ! -e $T/usr/share/bsdf/data/scenes/knot.c");
     does("cmp validate/report.schema.json "
          "$T/usr/share/bsdf/report.schema.json");
+}
+
+/* Manual pages where there is help2man, else a word that there are none. */
+static void manuals_and_completion_come_along(void **state)
+{
+    (void)state;
+    does("cd $T/usr/share/bash-completion/completions && "
+         "ls bsdf-info bsdf-plot bsdf-render bsdf-validate");
+    if (sh("command -v bash") == 0)
+        prints("PATH=$T/usr/bin:$PATH bash -c '. "
+               "$T/usr/share/bash-completion/completions/bsdf-plot; "
+               "complete -p bsdf-plot; COMP_LINE=\"bsdf-plot lobe3\" "
+               "COMP_POINT=15 COMP_WORDS=(bsdf-plot); _bsdf; "
+               "echo $COMPREPLY'",
+               "complete -o default -F _bsdf bsdf-plot\nlobe3d\n");
+    if (sh("command -v help2man") == 0)
+        does("cd $T/usr/share/man/man1 && for p in bsdf-info bsdf-plot "
+             "bsdf-render bsdf-validate; do grep -qi \"^.TH $p\" $p.1 || "
+             "exit 1; done");
+    does("make install HAS_HELP2MAN= PREFIX=$T/bare STAGE=$T/stage");
+    assert_has(output, "without manual pages");
+    does("ls $T/bare/bin/bsdf-validate && [ ! -e $T/bare/share/man ] && "
+         "make uninstall PREFIX=$T/bare && rm -r $T/bare");
 }
 
 static void relative_prefixes_are_refused(void **state)
@@ -224,6 +250,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         { "install fills a prefix", install_fills_a_prefix },
+        { "manual pages and completion come along",
+          manuals_and_completion_come_along },
         { "relative prefixes and spaces are refused",
           relative_prefixes_are_refused },
         { "every installed header stands alone", every_header_stands_alone },

@@ -898,8 +898,7 @@ static void shapes_keep_their_outside(void **state)
 {
     (void)state;
     static const char *const steps[] = {
-        "<scale z=\"3\"/><rotate y=\"1\" z=\"1\" angle=\"33\"/>"
-        "<translate x=\"2\"/>",
+        "<scale z=\"3\"/><rotate y=\"1\" angle=\"33\"/><translate x=\"2\"/>",
         "<scale x=\"-1\" z=\"3\"/><rotate x=\"1\" angle=\"77\"/>",
         "<matrix value=\"1 0 0 2 0 0 1 0 0 3 0 0 0 0 0 1\"/>",
     };
@@ -1025,9 +1024,8 @@ static const char obj[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\n"
 static struct mesh *mesh_of(const char *path, bool flat)
 {
     const struct meshfile_options o = { affine_identity, flat, false };
-    size_t bytes;
     struct err err;
-    struct mesh *m = meshfile_read(path, &o, &bytes, &err);
+    struct mesh *m = meshfile_read(path, &o, &err);
     if (!m)
         fail_msg("%s", err.text);
     return m;
@@ -1040,9 +1038,8 @@ static void mesh_refused(const char *name, const char *document,
     const struct meshfile_options o = { .to_world = affine_identity };
     char *text = replaced(document, what, by);
     const char *path = written(name, text, strlen(text));
-    size_t bytes;
     struct err err;
-    struct mesh *m = meshfile_read(path, &o, &bytes, &err);
+    struct mesh *m = meshfile_read(path, &o, &err);
     free(text);
     if (m)
         fail_msg("%s was taken", by);
@@ -1080,9 +1077,9 @@ static void mesh_files_are_what_they_say(void **state)
 static void broken_mesh_files_are_named(void **state)
 {
     (void)state;
-    mesh_refused("mesh.ply", ply, "vertex 4", "vertex 1000000", "mesh.ply:4",
+    mesh_refused("mesh.ply", ply, "vertex 4", "vertex 1000000", "mesh.ply:3",
                  "1000000 of \"vertex\" are claimed");
-    mesh_refused("mesh.ply", ply, "face 2", "face 4000000000", "mesh.ply:8",
+    mesh_refused("mesh.ply", ply, "face 2", "face 4000000000", "mesh.ply:7",
                  "too short");
     mesh_refused("mesh.ply", ply, "face 2", "face -2", "mesh.ply:7",
                  "a name and a number");
@@ -1106,6 +1103,41 @@ static void broken_mesh_files_are_named(void **state)
                    "vertex_indices\nend_header\n1234567890";
     written("none.ply", claim, sizeof claim - 1);
     assert_small(path, "claimed", 8 << 10);
+}
+
+/* Of a text the last digits may be missing. */
+static void cut_off_mesh_files_are_refused(void **state)
+{
+    static const char head[] =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\n"
+        "property float x\nproperty float y\nproperty float z\n"
+        "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+    static const float xyz[] = { 0, 0, 0, 1, 0, 0, 1, 1, 0 };
+    static const int corner[2][3] = { { 0, 1, 2 }, { 2, 1, 0 } };
+    const struct meshfile_options o = { .to_world = affine_identity };
+    char text[sizeof head + sizeof xyz + 2 * 13], *to = text;
+    (void)state;
+    to = (char *)memcpy(to, head, sizeof head - 1) + sizeof head - 1;
+    to = (char *)memcpy(to, xyz, sizeof xyz) + sizeof xyz;
+    for (int i = 0; i < 2; i++) {
+        *to++ = 3;
+        to = (char *)memcpy(to, corner[i], 12) + 12;
+    }
+    const size_t size = (size_t)(to - text);
+    struct err err;
+    mesh_free(mesh_of(written("cut.ply", text, size), false));
+    for (size_t cut = 0; cut < size; cut++) {
+        const char *path = written("cut.ply", text, cut);
+        struct mesh *m = meshfile_read(path, &o, &err);
+        if (m)
+            fail_msg("%zu of %zu bytes were taken", cut, size);
+        assert_has(err.text, "cut.ply");
+    }
+    for (size_t cut = 0; cut + 3 < sizeof ply; cut += 5) {
+        const char *path = written("cut.ply", ply, cut);
+        if (meshfile_read(path, &o, &err))
+            fail_msg("%zu bytes were taken", cut);
+    }
 }
 
 /* Every byte that a mutation can touch, and what is left of files: nothing may
@@ -1200,6 +1232,22 @@ static void compatibility_has_names(void **state)
 
 /* -- what is there besides -- */
 
+/* The triangles' normals cancel out, and point outward. */
+static void closed(const struct mesh *m)
+{
+    struct vec3 sum = { 0, 0, 0 };
+    double volume = 0, area = 0;
+    for (size_t i = 0; i < m->triangles; i++) {
+        const struct vec3 n = mesh_cross(m, i);
+        sum = vec3_add(sum, n);
+        area += vec3_length(n);
+        volume += vec3_dot(mesh_vertex(m, i, 0), n) / 6;
+    }
+    assert_non_null(m->normal);
+    assert_at_most(vec3_length(sum), 1e-6 * area);
+    assert_true(volume > 0);
+}
+
 static void in_tree_scenes_load(void **state)
 {
     (void)state;
@@ -1225,6 +1273,8 @@ static void in_tree_scenes_load(void **state)
         assert_int_equal(scene_size(s).lights, 1);
         assert_int_equal(scene_wishes(s).max_depth, 2);
         assert_true(scene_commit(s, &err));
+        if (scenes[i].triangles > 12)
+            closed(s->shape[6].mesh);
         scene_free(s);
     }
 }
@@ -1338,6 +1388,8 @@ int main(void)
           what_is_wrong_in_an_xml_is_named },
         { "PLY and OBJ are what they say", mesh_files_are_what_they_say },
         { "broken mesh files are named", broken_mesh_files_are_named },
+        { "mesh files that are cut off are refused",
+          cut_off_mesh_files_are_refused },
         { "no mutilated file crashes", no_mutilated_file_crashes },
         { "transforms are what they say", transforms_are_what_they_say },
         { "compatibility has names", compatibility_has_names },

@@ -505,20 +505,86 @@ static void threads_do_not_matter(void **state)
     scene_free(s);
 }
 
+/* Nor does what else is in a wave: many BSDFs, shapes and lights, lobes of all
+ * kinds, and pixels that are done early. */
+static void company_does_not_matter(void **state)
+{
+    struct scene *s = empty();
+    struct err err;
+    const struct light sky = { .kind = LIGHT_HEMISPHERE,
+                               .radiance = spectrum_of(3, 0.3) };
+    const struct light point = { .kind = LIGHT_POINT,
+                                 .radiance = spectrum_of(3, 2),
+                                 .position = { 1, 2, -1 } };
+    (void)state;
+    floor_under(s, 0.6);
+    const struct surface glass = matter(s, "dielectric:int_ior=1.5", 0);
+    const struct surface metal =
+        matter(s, "roughconductor:material=Cu,alpha=0.3", 0);
+    const struct surface glow = matter(s, "diffuse:reflectance=0", 3);
+    done(scene_add_sphere(s, (struct vec3){ -0.4, 0.5, 0 }, 0.5, false, &glass,
+                          &err),
+         &err);
+    done(scene_add_disk(s, (struct vec3){ 0.6, 0.4, 0.3 },
+                        (struct vec3){ 0.3, 0, 0.3 },
+                        (struct vec3){ 0, sqrt(0.18), 0 }, &metal, &err),
+         &err);
+    done(scene_add_sphere(s, (struct vec3){ 0, 2, 0.5 }, 0.2, false, &glow,
+                          &err),
+         &err);
+    done(scene_add_light(s, &sky, &err), &err);
+    done(scene_add_light(s, &point, &err), &err);
+    look(s, (struct vec3){ 0.2, 1.3, -3 }, (struct vec3){ 0, 0.5, 0 }, 20, 2);
+    done(scene_commit(s, &err), &err);
+    for (int d = PATH_MIS; d <= PATH_HEMISPHERE; d++) {
+        struct render_settings set = usual;
+        struct render_result all, part;
+        set.path.max_depth = 6;
+        set.path.rr_depth = 3;
+        set.path.light_samples = 1 + d % 2;
+        set.path.direct = (enum path_direct)d;
+        set.sampler = d % 2 ? SAMPLER_LD : SAMPLER_INDEPENDENT;
+        set.samples = 75;
+        set.batch = 13;
+        set.tolerance = d >= PATH_HIT ? 0.1 : 0;
+        done(render(s, &set, &all, &err), &err);
+        assert_int_equal(all.bad, 0);
+        set.x = 7, set.y = 5, set.width = 9, set.height = 11;
+        set.threads = 1;
+        done(render(s, &set, &part, &err), &err);
+        for (int y = 0; y < 11; y++)
+            assert_memory_equal(part.film->pixel + 9 * y,
+                                all.film->pixel + 20 * (5 + y) + 7,
+                                9 * sizeof *part.film->pixel);
+        film_free(all.film);
+        film_free(part.film);
+    }
+    scene_free(s);
+}
+
 /* Of 2^k samples of a row, the first two numbers fall once each into every box
  * of area 2^-k whose sides are powers of two, the third into each interval. */
 static void spread_samples_fill_boxes(void **state)
 {
     enum { BITS = 8, N = 1 << BITS };
-    struct sampler *s = malloc(sizeof *s);
+    const struct sampler s = { SAMPLER_LD, 3 };
+    const uint64_t pixel[] = { 12345, 777 };
     (void)state;
-    assert_non_null(s);
-    sampler_start(s, SAMPLER_LD, 3, 12345);
     for (uint64_t row = 60; row < 68; row++) {
         struct vec3 u[N];
-        for (uint64_t i = 0; i < N; i++) {
-            sampler_go(s, i);
-            u[i] = sampler_row(s, row);
+        for (uint32_t from = 0; from < N; from += WAVE / 2) {
+            uint16_t piece[WAVE];
+            uint32_t sample[WAVE];
+            struct vecs out;
+            const struct sampler_lanes lanes = { 2, pixel, WAVE, piece,
+                                                 sample };
+            for (uint32_t i = 0; i < WAVE; i++) {
+                piece[i] = i % 2;
+                sample[i] = from + i / 2;
+            }
+            sampler_row(&s, row, &lanes, &out);
+            for (size_t i = 0; i < WAVE; i += 2)
+                u[sample[i]] = vecs_at(&out, i + row % 2);
         }
         for (int wide = 0; wide <= BITS + 1; wide++) {
             char hit[N] = { 0 };
@@ -533,7 +599,6 @@ static void spread_samples_fill_boxes(void **state)
                 assert_int_equal(hit[i], 1);
         }
     }
-    free(s);
 }
 
 /* The same mean, and less noise than the samples' own spread says. */
@@ -576,6 +641,7 @@ int main(void)
         { "spread samples fill boxes", spread_samples_fill_boxes },
         { "spread samples know less noise", spread_samples_know_less_noise },
         { "neither threads nor cells change a pixel", threads_do_not_matter },
+        { "nor does a pixel's company", company_does_not_matter },
     };
     return cmocka_run_group_tests_name("transport", tests, NULL, NULL);
 }

@@ -538,43 +538,45 @@ static bool missed(const struct work *w, const struct node *l, double height)
            l->depth < DEPTH_MAX;
 }
 
-/* Finds crossings; false when out of memory.  The array is the caller's. */
+/* Where a leaf met most on a side. */
+static struct crossing crossing_at(const struct node *l,
+                                   enum quadrature_side side)
+{
+    const struct rectangle r = l->r;
+    const double at = l->edge[side].at;
+    struct crossing c = {
+        .side = side, .x = at, .y = at, .dx = r.x1 - r.x0, .dy = r.y1 - r.y0
+    };
+    if (side == QUADRATURE_X0 || side == QUADRATURE_X1)
+        c.x = side == QUADRATURE_X0 ? r.x0 : r.x1;
+    else
+        c.y = side == QUADRATURE_Y0 ? r.y0 : r.y1;
+    return c;
+}
+
+/* Finds crossings of edges of which a side was accepted since the last time;
+ * false when out of memory.  The array is the caller's. */
 static bool crossings(struct work *w, struct crossing **out, size_t *n)
 {
+    enum { SIDES = QUADRATURE_SIDES };
     size_t size = 0;
     *n = 0;
-    for (size_t i = 0; i < w->nodes; i++)
-        for (int side = 0; w->node[i].halves == 0 && side < QUADRATURE_SIDES;
-             side++) {
-            const struct node *l = &w->node[i];
-            const struct edge e = l->edge[side];
-            const bool along_y = side == QUADRATURE_X0 || side == QUADRATURE_X1;
-            double x = side == QUADRATURE_X0   ? l->r.x0
-                       : side == QUADRATURE_X1 ? l->r.x1
-                                               : e.at;
-            double y = along_y                 ? e.at
-                       : side == QUADRATURE_Y0 ? l->r.y0
-                                               : l->r.y1;
-            if (!(e.height > 0))
-                continue;
-            const size_t into =
-                neighbour(w, l, (enum quadrature_side)side, &x, &y);
-            if (into == QUADRATURE_NONE || !(l->fresh || w->node[into].fresh) ||
-                !missed(w, &w->node[into], e.height))
-                continue;
-            struct crossing *more = grown(*out, sizeof *more, *n, &size);
-            if (!more)
-                return false;
-            *out = more;
-            more[(*n)++] = (struct crossing){
-                .into = into,
-                .side = (enum quadrature_side)side,
-                .x = x,
-                .y = y,
-                .dx = l->r.x1 - l->r.x0,
-                .dy = l->r.y1 - l->r.y0,
-            };
-        }
+    for (size_t i = 0; i < SIDES * w->nodes; i++) {
+        const struct node *l = &w->node[i / SIDES];
+        const enum quadrature_side side = (enum quadrature_side)(i % SIDES);
+        if (l->halves > 0 || !(l->edge[side].height > 0))
+            continue;
+        struct crossing c = crossing_at(l, side);
+        c.into = neighbour(w, l, side, &c.x, &c.y);
+        if (c.into == QUADRATURE_NONE || !(l->fresh || w->node[c.into].fresh) ||
+            !missed(w, &w->node[c.into], l->edge[side].height))
+            continue;
+        struct crossing *more = grown(*out, sizeof *more, *n, &size);
+        if (!more)
+            return false;
+        *out = more;
+        more[(*n)++] = c;
+    }
     for (size_t i = 0; i < w->nodes; i++)
         w->node[i].fresh = false;
     return true;
@@ -655,17 +657,17 @@ static bool follow(struct work *w)
     size_t n;
     bool ok = true, any = true;
     while (ok && any && *w->budget > 0) {
-        size_t true_ones = 0;
+        size_t kept = 0;
         ok = crossings(w, &c, &n);
         for (size_t at = 0; ok && at < n; at += RULES)
             look_beyond(w, c + at, n - at < RULES ? n - at : RULES);
         for (size_t i = 0; ok && i < n; i++)
             if (missed(w, &w->node[c[i].into], c[i].hint.height))
-                c[true_ones++] = c[i];
-        any = true_ones > 0;
+                c[kept++] = c[i];
+        any = kept > 0;
         if (ok && any) {
-            qsort(c, true_ones, sizeof *c, by_node);
-            ok = mend(w, c, true_ones);
+            qsort(c, kept, sizeof *c, by_node);
+            ok = mend(w, c, kept);
         }
     }
     free(c);
