@@ -30,7 +30,7 @@ static inline int sh(const char *command)
 /* Commands that all succeed, without a word on standard error. */
 static inline void quiet(const char *command)
 {
-    char line[4096];
+    char line[8192];
     snprintf(line, sizeof line, "{ set -e; %s; } 2>&1 >$T/out </dev/null",
              command);
     const int status = sh(line);
