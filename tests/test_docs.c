@@ -138,7 +138,11 @@ static void the_tutorial_runs_in_an_empty_folder(void **state)
 {
     (void)state;
     does("mkdir $T/own");
-    replays("validate/TUTORIAL.md", "", "own");
+    const bool python = sh("command -v python3") == 0;
+    if (!python)
+        print_message("skipped, without python3: the same in Python\n");
+    replays("validate/TUTORIAL.md",
+            python ? "" : "Write it|Have it|Mend it|Look at it|Keep it", "own");
     does("cd $T/own && ls lobe.svg histogram.svg rough.html rough.xml");
 }
 
