@@ -66,7 +66,8 @@ TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 # What `make test` runs.  Statistics over thousands of cases, pictures, and what
 # pages say ask nothing new of memory, and sanitizers make them take minutes.
 RUN      := $(if $(filter sanitize,$(config)),$(filter-out test_calibration \
-              test_depth test_docs test_mutants test_writeup,$(TESTS)),$(TESTS))
+              test_course test_depth test_docs test_mutants test_writeup,\
+              $(TESTS)),$(TESTS))
 # Programs of tests/ that `make test` does not run, each with its own target.
 LONG     := $(wildcard $(patsubst %,tests/%.c,bench bench_render mutants baselines calibrate))
 HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
