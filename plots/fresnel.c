@@ -324,7 +324,6 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 
 const struct plot plot_fresnel = {
     .name = "fresnel",
-    .about = "reflectance of the interface: exact, approximate, and the "
-             "differences",
+    .about = "reflectance of the interface: exact, approximate, differences",
     .run = run,
 };

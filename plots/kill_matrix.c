@@ -234,8 +234,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 
 const struct plot plot_kill_matrix = {
     .name = "kill-matrix",
-    .about = "which check finds which known mistake, from the table of `make "
-             "mutants`",
+    .about = "which check finds which known mistake, from `make mutants`",
     .subject = PLOT_FILE,
     .file = "`make mutants`, build/mutants/kill-matrix.tsv",
     .run = run,

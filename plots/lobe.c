@@ -263,8 +263,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 
 const struct plot plot_lobe = {
     .name = "lobe",
-    .about = "f and f |cos| in the plane of incidence or at --phi, in polar "
-             "angles",
+    .about = "f and f |cos| in the plane of incidence or at --phi",
     .heeds = HEEDS_WO | HEEDS_PHI | HEEDS_LOG,
     .models = PLOT_MODELS_MAX,
     .directions = PLOT_DIRECTIONS_MAX,

@@ -256,8 +256,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 
 const struct plot plot_p_values = {
     .name = "p-values",
-    .about = "the distribution of p-values, from a report or from calibrate "
-             "--p-values",
+    .about = "the distribution of p-values, of a report or of calibrate",
     .subject = PLOT_FILE,
     .file = "bsdf-validate --json, or of calibrate --p-values",
     .run = run,
