@@ -887,7 +887,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 
 const struct plot plot_writeup = {
     .name = "writeup",
-    .about = "a text with figures and numbers as one page of HTML, or as LaTeX",
+    .about = "a text with figures and numbers as a page of HTML, or LaTeX",
     .subject = PLOT_FILE,
     .file = "text, see plots/writeup.c",
     .extension = ".html",

@@ -237,8 +237,7 @@ static void the_verdicts_do_not_depend_on_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        { "sound models pass over seeds",
-          sound_models_pass_over_many_seeds },
+        { "sound models pass over seeds", sound_models_pass_over_many_seeds },
         { "alpha 1 % off fails chi2", alpha_one_percent_off_fails_chi2 },
         { "a pdf 1 % off fails pdf", a_pdf_one_percent_too_large_fails_pdf },
         { "a weight or pdf of a sample 1e-4 off fails sample",
