@@ -523,12 +523,14 @@ void compare_print(FILE *out, const struct comparison *c)
                 "note: only %.1f pixels of a block carry its noise, %g are "
                 "wanted: more samples or larger blocks would be surer\n",
                 c->carriers, carriers_enough);
+    fprintf(out, "mean luminance, second over first: %.5g\n", c->ratio);
+    if (isfinite(c->variance_ratio)) /* a file may lack luminance's */
+        fprintf(out, "variance of a pixel, second over first: %.4g\n",
+                c->variance_ratio);
     fprintf(out,
-            "mean luminance, second over first: %.5g\n"
-            "variance of a pixel, second over first: %.4g\n"
             "found 99 times of 100: a bias of %.2g %% everywhere, of %.2g %% "
             "in a typical block\n",
-            c->ratio, c->variance_ratio, 100 * c->bias, 100 * c->block_bias);
+            100 * c->bias, 100 * c->block_bias);
 }
 
 void compare_print_numbers(FILE *out, const struct comparison *c)
