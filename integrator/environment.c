@@ -29,9 +29,7 @@ static double phi_edge(const struct environment *e, int column)
 
 static double luminance(struct spectrum s)
 {
-    const float rgb[] = { (float)s.band[0], (float)s.band[1],
-                          (float)s.band[2] };
-    return film_luminance(rgb);
+    return film_luminance_of(s.band[0], s.band[1], s.band[2]);
 }
 
 /* The edges of the histogram's bins, which rise: rows from below. */

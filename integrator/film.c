@@ -42,6 +42,5 @@ void film_free(struct film *f)
 
 double film_luminance(const float rgb[3])
 {
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] +
-           0.0722 * (double)rgb[2];
+    return film_luminance_of((double)rgb[0], (double)rgb[1], (double)rgb[2]);
 }

@@ -42,7 +42,11 @@ bool film_size_ok(int64_t width, int64_t height);
 struct film *film_new(int width, int height, struct err *err);
 void film_free(struct film *f); /* NULL is fine */
 
-/** Luminance of linear R, G and B: 0.2126, 0.7152, 0.0722 (ITU-R BT.709). */
+/** Luminance of linear R, G and B (ITU-R BT.709). */
+static inline double film_luminance_of(double r, double g, double b)
+{
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
 double film_luminance(const float rgb[3]);
 
 /* -- OpenEXR ---------------------------------------------------------------

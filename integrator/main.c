@@ -506,12 +506,6 @@ static int draw(struct request *r, const char *command, struct err *err)
 /* -- comparing --------------------------------------------------------------
  */
 
-static bool is_png(const char *path)
-{
-    const size_t n = strlen(path);
-    return n > 4 && strcmp(path + n - 4, ".png") == 0;
-}
-
 static int compare_pngs(const struct request *r, struct err *err)
 {
     struct png_comparison c;
@@ -523,7 +517,7 @@ static int compare_pngs(const struct request *r, struct err *err)
 
 static int compare(const struct request *r, struct err *err)
 {
-    if (is_png(r->arg[0]) && is_png(r->arg[1]))
+    if (output_is_png(r->arg[0]) && output_is_png(r->arg[1]))
         return compare_pngs(r, err);
     struct film *a = film_read_exr(r->arg[0], err);
     struct film *b = a ? film_read_exr(r->arg[1], err) : NULL;

@@ -8,6 +8,7 @@
 
 #include "bsdf/cli.h"
 #include "bsdf/outfile.h"
+#include "integrator/measure.h"
 
 static bool ends(const char *path, const char *with)
 {
@@ -15,9 +16,14 @@ static bool ends(const char *path, const char *with)
     return n > k && strcmp(path + n - k, with) == 0;
 }
 
+bool output_is_png(const char *path)
+{
+    return ends(path, ".png");
+}
+
 bool output_check(const char *path, struct err *err)
 {
-    return ends(path, ".png") || ends(path, ".exr") ||
+    return output_is_png(path) || ends(path, ".exr") ||
            err_set(err, "-f %.200s: expected a name that ends in .png or .exr",
                    path);
 }
@@ -103,36 +109,6 @@ void output_scene(FILE *out, const char *name, const struct scene *s)
     fprintf(out, "%d x %d pixels\n", c->width, c->height);
 }
 
-/* The mean luminance, and its standard error from the pixels' variances. */
-static void print_luminance(FILE *out, const struct film *f)
-{
-    const size_t n = (size_t)f->width * (size_t)f->height;
-    double sum = 0, variance = 0;
-    for (size_t i = 0; i < n; i++) {
-        sum += film_luminance(f->pixel[i].mean);
-        variance += (double)f->pixel[i].luminance_variance;
-    }
-    fprintf(out, "mean luminance %.6g", sum / (double)n);
-    if (isfinite(variance))
-        fprintf(out, " +- %.2g", sqrt(variance) / (double)n);
-    fputc('\n', out);
-}
-
-static void print_rates(FILE *out, const struct film *f)
-{
-    const size_t n = (size_t)f->width * (size_t)f->height;
-    uint64_t sum = 0;
-    uint32_t least = UINT32_MAX, most = 0;
-    for (size_t i = 0; i < n; i++) {
-        const uint32_t count = f->pixel[i].count;
-        sum += count;
-        least = count < least ? count : least;
-        most = count > most ? count : most;
-    }
-    fprintf(out, "samples a pixel: %.1f on average, %u to %u\n",
-            (double)sum / (double)n, least, most);
-}
-
 void output_summary(FILE *out, const struct render_result *made,
                     const struct render_settings *settings)
 {
@@ -148,7 +124,14 @@ void output_summary(FILE *out, const struct render_result *made,
             settings->path.rr_depth, by, (unsigned long long)settings->seed,
             (double)made->paths / 1e6, (double)made->rays / 1e6, made->seconds,
             (double)made->rays / 1e6 / s);
-    print_luminance(out, made->film);
+    struct measure m;
+    if (!measure_film(made->film, 0, 0, 0, 0, &m, NULL))
+        return; /* all of a picture is always in it */
+    fprintf(out, "mean luminance %.6g", m.luminance);
+    if (isfinite(m.error))
+        fprintf(out, " +- %.2g", m.error);
+    fputc('\n', out);
     if (settings->tolerance > 0)
-        print_rates(out, made->film);
+        fprintf(out, "samples a pixel: %.1f on average, %u to %u\n", m.samples,
+                m.least, m.most);
 }

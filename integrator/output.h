@@ -13,6 +13,8 @@ struct output_settings {
     double exposure;
 };
 
+bool output_is_png(const char *path); /* by its name */
+
 /** Whether a name ends in .png or .exr. */
 bool output_check(const char *path, struct err *err);
 

@@ -35,14 +35,10 @@ static struct sums *sums_at(const struct job *job, int x, int y)
     return &job->sums[(size_t)y * (size_t)job->width + (size_t)x];
 }
 
-static double luminance(struct spectrum s)
-{
-    return 0.2126 * s.band[0] + 0.7152 * s.band[1] + 0.0722 * s.band[2];
-}
-
 static void add(struct sums *a, const struct path *p)
 {
-    const double y = luminance(p->radiance);
+    const double *rgb = p->radiance.band;
+    const double y = film_luminance_of(rgb[0], rgb[1], rgb[2]);
     a->n++;
     for (int b = 0; b < 3; b++) {
         const double x = p->radiance.band[b];

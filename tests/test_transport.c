@@ -129,6 +129,26 @@ static double corner_irradiance(double a, double b)
     return (a / p * atan(b / p) + b / q * atan(a / q)) / 2;
 }
 
+/* Looks at the origin, and has all it needs. */
+static void finish(struct scene *s)
+{
+    struct err err;
+    look(s, (struct vec3){ -2, 0.5, -1 }, (struct vec3){ 0, 0, 0 }, 4, 1e-4);
+    done(scene_commit(s, &err), &err);
+}
+
+/* By all ways to direct light the same; frees the scene. */
+static void expect_irradiance(struct scene *s, double e)
+{
+    for (int d = PATH_MIS; d <= PATH_HEMISPHERE; d++) {
+        struct render_settings set = usual;
+        set.path.direct = (enum path_direct)d;
+        set.samples = 2048;
+        expect(rendered(s, &set, 1), 0.73 / PI * e);
+    }
+    scene_free(s);
+}
+
 /* A floor of reflectance .73 at the origin, a light of radiance 7.1 above. */
 static struct scene *under_rectangle(void)
 {
@@ -141,8 +161,7 @@ static struct scene *under_rectangle(void)
                              (struct vec3){ 0.9, 0, 0 },
                              (struct vec3){ 0, 0, 1.7 }, &glow, &err),
          &err);
-    look(s, (struct vec3){ -2, 0.5, -1 }, (struct vec3){ 0, 0, 0 }, 4, 1e-4);
-    done(scene_commit(s, &err), &err);
+    finish(s);
     return s;
 }
 
@@ -176,17 +195,10 @@ static void disk_light(void **state)
                         (struct vec3){ 0.6, 0, 0 }, (struct vec3){ 0, 0, 0.6 },
                         &glow, &err),
          &err);
-    look(s, (struct vec3){ -2, 0.5, -1 }, (struct vec3){ 0, 0, 0 }, 4, 1e-4);
-    done(scene_commit(s, &err), &err);
+    finish(s);
     /* E = pi L sin^2 of the half angle. */
     const double e = PI * 7.1 * 0.36 / (0.36 + 1.69);
-    for (int d = PATH_MIS; d <= PATH_HEMISPHERE; d++) {
-        struct render_settings set = usual;
-        set.path.direct = (enum path_direct)d;
-        set.samples = 2048;
-        expect(rendered(s, &set, 1), 0.73 / PI * e);
-    }
-    scene_free(s);
+    expect_irradiance(s, e);
 }
 
 static void sphere_light(void **state)
@@ -199,18 +211,11 @@ static void sphere_light(void **state)
     done(scene_add_sphere(s, (struct vec3){ 0.4, 1.3, 0.2 }, 0.55, false, &glow,
                           &err),
          &err);
-    look(s, (struct vec3){ -2, 0.5, -1 }, (struct vec3){ 0, 0, 0 }, 4, 1e-4);
-    done(scene_commit(s, &err), &err);
+    finish(s);
     /* A sphere above the horizon: E = pi L (r/d)^2 cos theta. */
     const double d2 = 0.16 + 1.69 + 0.04;
     const double e = PI * 7.1 * 0.55 * 0.55 / d2 * 1.3 / sqrt(d2);
-    for (int d = PATH_MIS; d <= PATH_HEMISPHERE; d++) {
-        struct render_settings set = usual;
-        set.path.direct = (enum path_direct)d;
-        set.samples = 2048;
-        expect(rendered(s, &set, 1), 0.73 / PI * e);
-    }
-    scene_free(s);
+    expect_irradiance(s, e);
 }
 
 static void point_light(void **state)
@@ -223,8 +228,7 @@ static void point_light(void **state)
     (void)state;
     floor_under(s, 0.73);
     done(scene_add_light(s, &light, &err), &err);
-    look(s, (struct vec3){ -2, 0.5, -1 }, (struct vec3){ 0, 0, 0 }, 4, 1e-4);
-    done(scene_commit(s, &err), &err);
+    finish(s);
     const double d2 = 0.16 + 1.69 + 0.04;
     for (int d = PATH_MIS; d <= PATH_HEMISPHERE; d++) {
         struct render_settings set = usual;
