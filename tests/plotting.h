@@ -59,17 +59,8 @@ static inline void refused(const char *command, const char *a, const char *b)
 static inline int setup(void **state)
 {
     (void)state;
-    const char *given = getenv("BIN");
-    if (!realpath(given ? given : "build/bin", bin))
-        return -1;
-    char path[8192];
-    snprintf(path, sizeof path, "%s:%s", bin, getenv("PATH"));
-    setenv("PATH", path, 1);
     unsetenv("BSDF_IOR_PATH");
-    strcpy(folder, "/tmp/bsdf-plots-XXXXXX");
-    if (!mkdtemp(folder))
-        return -1;
-    return setenv("T", folder, 1);
+    return shell_setup("plots", bin, folder);
 }
 
 static inline int teardown(void **state)

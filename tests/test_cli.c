@@ -42,17 +42,8 @@ static void refused(const char *command, const char *a, const char *b)
 static int setup(void **state)
 {
     (void)state;
-    const char *given = getenv("BIN");
-    if (!realpath(given ? given : "build/bin", bin))
-        return -1;
-    char path[8192];
-    snprintf(path, sizeof path, "%s:%s", bin, getenv("PATH"));
-    setenv("PATH", path, 1);
     unsetenv("BSDF_IOR_PATH");
-    strcpy(folder, "/tmp/bsdf-cli-XXXXXX");
-    if (!mkdtemp(folder))
-        return -1;
-    return setenv("T", folder, 1);
+    return shell_setup("cli", bin, folder);
 }
 
 static int teardown(void **state)

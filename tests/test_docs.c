@@ -61,19 +61,13 @@ static void replays(const char *page, const char *sections, const char *where)
 static int setup(void **state)
 {
     (void)state;
-    static char bin[4096], path[8192];
-    const char *given = getenv("BIN");
+    static char bin[4096];
     char *root = realpath(".", NULL);
-    if (!root || !realpath(given ? given : "build/bin", bin))
-        return -1;
-    snprintf(path, sizeof path, "%s:%s", bin, getenv("PATH"));
-    strcpy(folder, "/tmp/bsdf-docs-XXXXXX");
     unsetenv("BSDF_IOR_PATH");
     unsetenv("BSDF_PLUGIN_HOST");
-    const bool good = mkdtemp(folder) && !setenv("T", folder, 1) &&
-                      !setenv("BIN", bin, 1) && !setenv("PATH", path, 1) &&
-                      !setenv("ROOT", root, 1) && !setenv("BSDF", root, 1) &&
-                      !setenv("CPATH", root, 1);
+    const bool good = root && shell_setup("docs", bin, folder) == 0 &&
+                      !setenv("BIN", bin, 1) && !setenv("ROOT", root, 1) &&
+                      !setenv("BSDF", root, 1) && !setenv("CPATH", root, 1);
     free(root);
     return good ? 0 : -1;
 }

@@ -74,19 +74,13 @@ static void nothing_is_left(void)
 static int setup(void **state)
 {
     (void)state;
-    static char bin[4096], path[8192];
-    const char *given = getenv("BIN");
+    static char bin[4096];
     char *root = realpath(".", NULL);
-    if (!root || !realpath(given ? given : "build/bin", bin))
+    unsetenv("BSDF_PLUGIN_HOST");
+    if (!root || shell_setup("foreign", bin, folder) != 0)
         return -1;
-    snprintf(path, sizeof path, "%s:%s", bin, getenv("PATH"));
-    setenv("PATH", path, 1);
     setenv("ROOT", root, 1);
     free(root);
-    unsetenv("BSDF_PLUGIN_HOST");
-    strcpy(folder, "/tmp/bsdf-foreign-XXXXXX");
-    if (!mkdtemp(folder) || setenv("T", folder, 1) != 0)
-        return -1;
     setenv("AWK",
            sh("awk -W version | grep -q ^mawk") == 0 ? "awk -W interactive"
                                                      : "awk",

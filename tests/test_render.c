@@ -77,17 +77,10 @@ static void refused(const char *arguments, const char *a, const char *b)
 
 static int setup(void **state)
 {
-    char path[8192], bin[4096], text[8192];
+    char bin[4096], text[8192];
     (void)state;
-    const char *given = getenv("BIN");
-    if (!realpath(given ? given : "build/bin", bin))
+    if (shell_setup("render", bin, folder) != 0)
         return -1;
-    snprintf(path, sizeof path, "%s:%s", bin, getenv("PATH"));
-    setenv("PATH", path, 1);
-    strcpy(folder, "/tmp/bsdf-render-XXXXXX");
-    if (!mkdtemp(folder))
-        return -1;
-    setenv("T", folder, 1);
     snprintf(text, sizeof text, "%s/a.xml", folder);
     FILE *out = fopen(text, "w");
     return !out || fputs(scene, out) < 0 || fclose(out) != 0;

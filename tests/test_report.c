@@ -51,15 +51,9 @@ static const char *in_folder(const char *name)
 static int setup(void **state)
 {
     (void)state;
-    char bin[4096], paths[8192];
-    const char *given = getenv("BIN");
-    if (!realpath(given ? given : "build/bin", bin))
-        return -1;
-    snprintf(paths, sizeof paths, "%s:%s", bin, getenv("PATH"));
-    setenv("PATH", paths, 1);
+    char bin[4096];
     unsetenv("BSDF_IOR_PATH");
-    strcpy(folder, "/tmp/bsdf-report-XXXXXX");
-    if (!mkdtemp(folder) || setenv("T", folder, 1) != 0)
+    if (shell_setup("report", bin, folder) != 0)
         return -1;
     /* Sound, failing, not applicable; and a name that is no text. */
     return sh("cp data/ior/Ca/Mathewson.yml \"$T/$(printf '\\377<&').yml\" && "
