@@ -1,6 +1,7 @@
 /* cells.c - charts of the sphere, counts and integrals over their cells */
 #include "plots/cells.h"
 
+#include <gsl/gsl_sort.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -179,12 +180,6 @@ static void count(struct cells *h)
 
 /* -- the window ------------------------------------------------------------ */
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 struct range {
     double from, to;
 };
@@ -200,7 +195,7 @@ static struct range bulk(const struct cell_point *p, size_t n, bool of_y,
 {
     for (size_t i = 0; i < n; i++)
         room[i] = of_y ? p[i].y : p[i].x;
-    qsort(room, n, sizeof *room, ascending);
+    gsl_sort(room, 1, n);
     const struct range r = { room[n / 50], room[n - 1 - n / 50] };
     const double margin = fmax(0.2 * width(r), 1e-9);
     return (struct range){ r.from - margin, r.to + margin };

@@ -358,10 +358,10 @@ static bool picture_draw(struct figure *fig, const char *script, char *said,
     return ok && form_finish(fig->form, drawn, err);
 }
 
-/* Closes one of them and remembers its path. */
-static bool keep(struct outfile *out, struct figure_made *made, struct err *err)
+bool figure_made_keep(struct figure_made *made, struct outfile *out,
+                      const char *name, struct err *err)
 {
-    char *path = strdup(out->path);
+    char *path = strdup(name);
     if (!path) {
         outfile_abandon(out);
         return err_set(err, "out of memory");
@@ -372,6 +372,11 @@ static bool keep(struct outfile *out, struct figure_made *made, struct err *err)
     }
     made->path[made->paths++] = path;
     return true;
+}
+
+static bool keep(struct outfile *out, struct figure_made *made, struct err *err)
+{
+    return figure_made_keep(made, out, out->path, err);
 }
 
 bool figure_draw(struct figure *fig, struct figure_made *made, struct err *err)

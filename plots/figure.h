@@ -51,6 +51,11 @@ struct figure_made {
 
 void figure_made_clear(struct figure_made *made);
 
+/** Closes a file and remembers it by a name; nothing is left where either
+ * fails. */
+bool figure_made_keep(struct figure_made *made, struct outfile *out,
+                      const char *name, struct err *err);
+
 /** Opens all of them for a picture to be at path, which ends in .svg, .pdf,
  * .png or .tex.  Either figure_draw or figure_abandon must follow. */
 bool figure_open(struct figure *fig, const char *path,

@@ -12,11 +12,7 @@
 #include "validate/foreign.h"
 
 enum {
-    OPT_NM = 1,
-    OPT_RGB,
-    OPT_IOR_PATH,
-    OPT_WO,
-    OPT_SEED,
+    OPT_WO = 1,
     OPT_SAMPLES,
     OPT_RANGE,
     OPT_PROGRAMS,
@@ -30,6 +26,7 @@ enum {
 
 struct request {
     struct plot_request plot;
+    struct cli_shared shared;
     const char *arg[1 + PLOT_MODELS_MAX]; /* the kind, and specs or names */
     int args;
 };
@@ -72,17 +69,10 @@ static const struct argp_option options[] = {
     { "samples", OPT_SAMPLES, "N", 0,
       "drawn for a histogram, a convergence or an albedo, 1000 to 1e9; 1e6",
       0 },
-    { "seed", OPT_SEED, "S", 0, "of the random numbers; 1", 0 },
-    { "nm", OPT_NM, "A,B,C", 0, "the bands: one to four wavelengths", 0 },
-    { "rgb", OPT_RGB, "METHOD", 0,
-      "the bands: R, G, B by fit (if neither is given), average or fixed:A,B,C",
-      0 },
     { "range", OPT_RANGE, "LO,HI", 0,
       "of wavelengths in nm; what there is from 360 to 830", 0 },
     { "programs", OPT_PROGRAMS, 0, 0,
       "a report may start the programs and plugins that its specs name", 0 },
-    { "ior-path", OPT_IOR_PATH, "DIR", 0,
-      "a refractiveindex.info database (or BSDF_IOR_PATH)", 0 },
     { 0 },
 };
 
@@ -142,20 +132,14 @@ static error_t option(int key, char *arg, struct argp_state *state)
     struct err err;
     bool ok = true;
     switch (key) {
-    case OPT_NM:
-        ok = bands_parse(&r->plot.bands, arg, &err);
-        break;
-    case OPT_RGB:
-        ok = bands_parse_rgb(&r->plot.bands, arg, &err);
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &r->shared;
         break;
     case OPT_RANGE:
         ok = range_read(&r->plot, arg, &err);
         break;
     case OPT_PROGRAMS:
         r->plot.programs = true;
-        break;
-    case OPT_IOR_PATH:
-        ok = cli_ior_path(arg, &err);
         break;
     case OPT_WO:
         ok = direction_add(&r->plot, arg, &err);
@@ -181,9 +165,6 @@ static error_t option(int key, char *arg, struct argp_state *state)
     case OPT_SAMPLES:
         ok = cli_count(&r->plot.samples, "--samples", arg, 1000, 1000000000,
                        &err);
-        break;
-    case OPT_SEED:
-        ok = cli_count(&r->plot.seed, "--seed", arg, 0, INT64_MAX, &err);
         break;
     case 'o':
         r->plot.output = arg;
@@ -356,18 +337,21 @@ static bool draw(struct request *r, struct figure_made *made, struct err *err)
 
 int main(int argc, char **argv)
 {
-    struct request r = { .plot = { .bands = bands_default,
-                                   .phi_deg = NAN,
-                                   .seed = 1,
-                                   .samples = 1000000 } };
+    struct request r = { .plot = { .phi_deg = NAN, .samples = 1000000 },
+                         .shared = { .bands = bands_default, .seed = 1 } };
     struct figure_made made = { .paths = 0 };
     struct err err = { "" };
     gsl_set_error_handler_off();
     argp_err_exit_status = EXIT_REQUEST;
-    argp_parse(&(struct argp){ options, option,
-                               "KIND SPEC...\nKIND NAME[,NAME...]\nKIND FILE",
-                               about, 0, help, 0 },
-               argc, argv, 0, NULL, &r);
+    argp_parse(
+        &(struct argp){
+            options, option, "KIND SPEC...\nKIND NAME[,NAME...]\nKIND FILE",
+            about,
+            (const struct argp_child[]){ { &cli_shared_argp, 0, 0, 0 }, { 0 } },
+            help, 0 },
+        argc, argv, 0, NULL, &r);
+    r.plot.bands = r.shared.bands;
+    r.plot.seed = r.shared.seed;
     bool ok = draw(&r, &made, &err);
     for (int i = 0; i < made.paths; i++)
         puts(made.path[i]);

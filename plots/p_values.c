@@ -8,6 +8,7 @@
  * verdicts, by check, and conservative; or a table of named columns (rows.h),
  * as tests/calibrate --p-values writes it: `p`, in [0, 1], and `name`.
  */
+#include <gsl/gsl_sort.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -100,18 +101,12 @@ static bool from_table(struct samples *s, const char *path, struct err *err)
     return ok;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void settle(struct samples *s)
 {
     for (int i = 0; i < s->n; i++) {
         struct sample *a = &s->of[i];
         const double n = (double)a->n;
-        qsort(a->p, a->n, sizeof *a->p, ascending);
+        gsl_sort(a->p, 1, a->n);
         for (size_t k = 0; k < a->n; k++)
             a->off = fmax(a->off, fmax((double)(k + 1) / n - a->p[k],
                                        a->p[k] - (double)k / n));

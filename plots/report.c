@@ -711,13 +711,7 @@ static bool write_page(struct page *p, const char *path,
     failing(p);
     everything(p);
     fputs("</body>\n</html>\n", p->out);
-    char *name = strdup(path);
-    if (!name || !outfile_close(&out, err)) {
-        free(name);
-        return false;
-    }
-    made->path[made->paths++] = name;
-    return true;
+    return figure_made_keep(made, &out, path, err);
 }
 
 static bool run(const struct plot_request *r, struct figure_made *made,

@@ -1,6 +1,7 @@
 /* surface.c - meshes that follow a lobe however narrow it is */
 #include "plots/surface.h"
 
+#include <gsl/gsl_sort.h>
 #include <stdlib.h>
 
 #include "plots/colours.h"
@@ -98,12 +99,6 @@ static void peak_find(const struct surface *s, struct surface_side *side)
 
 /* -- the mesh -------------------------------------------------------------- */
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void lines_init(struct surface_lines *l, double from, double to,
                        double step, double peak)
 {
@@ -117,7 +112,7 @@ static void lines_init(struct surface_lines *l, double from, double to,
         all[n++] = peak - ldexp(90, -k);
         all[n++] = peak + ldexp(90, -k);
     }
-    qsort(all, n, sizeof *all, ascending);
+    gsl_sort(all, 1, n);
     l->n = 0;
     for (size_t i = 0; i < n; i++)
         if (all[i] >= from && all[i] <= to &&

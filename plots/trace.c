@@ -1,6 +1,7 @@
 /* trace.c - angles where a line between neighbours is as good as the curve */
 #include "plots/trace.h"
 
+#include <gsl/gsl_sort.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -105,12 +106,6 @@ static bool refine(struct trace *l, struct trace_point *next, bool log)
     return more;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Angles ever closer to one; returns how many. */
 static size_t closer(double *theta, double to)
 {
@@ -129,7 +124,7 @@ static size_t drawn(const struct trace *l, double *theta)
     size_t kept = 0;
     for (size_t i = 0; i < l->pilots.n; i++)
         theta[i] = angle(l, l->pilots.wi[i]);
-    qsort(theta, l->pilots.n, sizeof *theta, ascending);
+    gsl_sort(theta, 1, l->pilots.n);
     for (size_t i = 0; i < l->pilots.n; i += DRAWS_APART)
         theta[kept++] = theta[i];
     return kept;
@@ -164,7 +159,7 @@ static bool follow(struct trace *l, bool log, struct err *err)
     n += closer(theta + n, 90);
     n += closer(theta + n, -90);
     n += drawn(l, theta + n);
-    qsort(theta, n, sizeof *theta, ascending);
+    gsl_sort(theta, 1, n);
     for (size_t i = 0; i < n; i++)
         if (fabs(theta[i]) <= l->limit_deg &&
             (i == 0 || theta[i] > theta[i - 1]))

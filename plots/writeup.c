@@ -843,13 +843,7 @@ static bool write_page(struct page *p, const char *output, char **line,
         return false;
     }
     fputs(p->tex ? "\\end{document}\n" : "</body>\n</html>\n", p->out);
-    char *name = strdup(output);
-    if (!name || !outfile_close(&out, err)) {
-        free(name);
-        return false;
-    }
-    made->path[made->paths++] = name;
-    return true;
+    return figure_made_keep(made, &out, output, err);
 }
 
 static bool run(const struct plot_request *r, struct figure_made *made,
