@@ -499,13 +499,13 @@ static void threads_do_not_matter(void **state)
         assert_memory_equal(part.film->pixel + 3 * y,
                             one.film->pixel + 6 * (3 + y) + 2,
                             3 * sizeof *part.film->pixel);
+    film_free(part.film);
     set.width = 5;
     assert_false(render(s, &set, &part, &err));
     assert_string_equal(err.text, "cell 5 x 2 at 2, 3: expected it inside the "
                                   "picture, 6 x 6");
     film_free(one.film);
     film_free(three.film);
-    film_free(part.film);
     scene_free(s);
 }
 
