@@ -30,6 +30,7 @@ enum {
     OPT_SAMPLER,
     OPT_COMPAT,
     OPT_LENIENT,
+    OPT_ROBUST,
     OPT_RGB,
     OPT_IOR_PATH,
     OPT_EXPOSURE,
@@ -48,7 +49,7 @@ struct request {
     struct render_settings render;
     struct load_options load;
     struct bands bands;
-    bool has_samples, has_depth, has_rr_depth, only_last, quiet;
+    bool has_samples, has_depth, has_rr_depth, only_last, robust, quiet;
     double lens_radius, focal_distance; /* NaN for the scene's */
     const char *camera, *environment;
     const char *output[FILES_MAX];
@@ -111,6 +112,10 @@ static const struct argp_option options[] = {
     { 0, 0, 0, 0, "Scene:", 3 },
     { "define", 'D', "NAME=VALUE", 0, "for $NAME in the file", 0 },
     { "lenient", OPT_LENIENT, 0, 0, "warn of what is unknown and go on", 0 },
+    { "robust", OPT_ROBUST, 0, 0,
+      "no ray slips between two triangles that share an edge; slower, and the "
+      "scene's own choice if not given",
+      0 },
     { "compat", OPT_COMPAT, "LIST", 0,
       "a course's ways: course for all, or some of camera, tone, light-pdf, "
       "light-quad, schlick, lambda, fresnel, refraction",
@@ -348,6 +353,9 @@ static error_t option(int key, char *arg, struct argp_state *state)
     case OPT_LENIENT:
         r->load.lenient = true;
         break;
+    case OPT_ROBUST:
+        r->robust = true;
+        break;
     case OPT_QUIET:
         r->quiet = true;
         break;
@@ -417,7 +425,7 @@ static bool surround(const struct request *r, struct scene *s, struct err *err)
 /* Fills in what the command line left to the scene, and the reverse. */
 static bool settle(struct request *r, struct scene *s, struct err *err)
 {
-    const struct scene_wishes w = scene_wishes(s);
+    struct scene_wishes w = scene_wishes(s);
     struct path_settings *p = &r->render.path;
     if (!r->has_samples && w.samples > 0)
         r->render.samples = (uint64_t)w.samples;
@@ -428,6 +436,8 @@ static bool settle(struct request *r, struct scene *s, struct err *err)
     if (r->only_last)
         p->only_bounce = p->max_depth;
     p->compat = r->load.compat;
+    w.robust |= r->robust;
+    scene_set_wishes(s, &w);
     struct camera c = *scene_camera(s);
     if (r->camera && !camera_file_read(&c, r->camera, err))
         return false;

@@ -10,6 +10,7 @@
  *   shape        see mitsuba_shape.c
  *   emitter      area of a shape; constant; point
  *   bsdf         the models by name (mitsuba_bsdf.c)
+ *   boolean      embree_use_robust_intersections, of the scene
  *   ref, default, $name
  *
  * Colours are <rgb> in linear sRGB.  An integrator's max_depth is a path's
@@ -254,6 +255,20 @@ static bool emitter(struct reading *r, const xmlNode *node)
     return ok;
 }
 
+/* What the scene itself has. */
+static bool flag(struct reading *r, const xmlNode *n)
+{
+    const char *name = xml_get(n, "name"), *value = xml_get(n, "value");
+    if (!name || strcmp(name, "embree_use_robust_intersections") != 0)
+        return loader_unknown(r->l, n, r->err,
+                              "expected embree_use_robust_intersections");
+    if (!value || (strcmp(value, "true") != 0 && strcmp(value, "false") != 0))
+        return xml_fail(n, r->err, "value=\"%.60s\": expected true or false",
+                        value ? value : "");
+    r->wishes.robust = value[0] == 't';
+    return true;
+}
+
 static bool part(struct reading *r, const xmlNode *n)
 {
     if (xml_is(n, "shape"))
@@ -266,6 +281,8 @@ static bool part(struct reading *r, const xmlNode *n)
         return emitter(r, n);
     if (xml_is(n, "integrator"))
         return integrator(r, n);
+    if (xml_is(n, "boolean"))
+        return flag(r, n);
     return xml_is(n, "default") ||
            loader_unknown(r->l, n, r->err,
                           "expected integrator, sensor, bsdf, shape, emitter "
@@ -274,7 +291,7 @@ static bool part(struct reading *r, const xmlNode *n)
 
 bool mitsuba_load(struct loader *l, struct err *err)
 {
-    struct reading r = { .l = l, .err = err, .wishes = { -1, -1, -1 } };
+    struct reading r = { .l = l, .err = err, .wishes = { -1, -1, -1, false } };
     const xmlNode *root = xmlDocGetRootElement(l->xml.doc);
     const char *version = xml_get(root, "version");
     if (!xml_is(root, "scene"))

@@ -29,7 +29,7 @@ struct scene *scene_new(const struct bands *bands, struct err *err)
         return NULL;
     }
     s->bands = *bands;
-    s->wishes = (struct scene_wishes){ -1, -1, -1 };
+    s->wishes = (struct scene_wishes){ -1, -1, -1, false };
     s->lo = (struct vec3){ INFINITY, INFINITY, INFINITY };
     s->hi = (struct vec3){ -INFINITY, -INFINITY, -INFINITY };
     s->glow_lo = s->lo;

@@ -210,7 +210,8 @@ bool scene_commit(struct scene *s, struct err *err)
                        (int)rtcGetDeviceError(NULL));
     rtcSetDeviceMemoryMonitorFunction(s->device, memory, s);
     s->embree = rtcNewScene(s->device);
-    rtcSetSceneFlags(s->embree, RTC_SCENE_FLAG_ROBUST);
+    if (s->wishes.robust)
+        rtcSetSceneFlags(s->embree, RTC_SCENE_FLAG_ROBUST);
     for (size_t i = 0; i < s->shapes; i++)
         attach(s, (unsigned)i);
     rtcCommitScene(s->embree);
@@ -452,19 +453,27 @@ void trace_places(const struct rays *rays, const struct met *met,
                   const uint16_t *ray, size_t n, struct hits *h)
 {
     struct corners c;
-    for (size_t i = 0; i < n; i++)
-        corners_at(met, ray[i], i, &c);
-    on_triangles(&c, n, h);
+    uint16_t more[WAVE]; /* those of which triangles are not all */
+    size_t mores = 0;
     for (size_t i = 0; i < n; i++) {
-        const size_t k = ray[i];
-        const struct shape *a = h->shape[i] = met->shape[k];
+        const struct shape *a = h->shape[i] = met->shape[ray[i]];
+        h->hair[i] = hair * a->reach;
+        h->emits[i] = false;
+        corners_at(met, ray[i], i, &c);
+        more[mores] = (uint16_t)i;
+        mores +=
+            a->kind != SHAPE_MESH || a->mesh->normal || a->flags & SHAPE_EMITS;
+    }
+    on_triangles(&c, n, h);
+    for (size_t j = 0; j < mores; j++) {
+        const size_t i = more[j], k = ray[i];
+        const struct shape *a = h->shape[i];
         if (a->kind == SHAPE_SPHERE)
             on_sphere(a, rays, k, met->distance[k], i, h);
         else if (a->kind == SHAPE_DISK)
             on_disk(a, rays, k, met->distance[k], i, h);
         else if (a->mesh->normal)
             smooth(a->mesh, met, k, i, h);
-        h->hair[i] = hair * a->reach;
         h->emits[i] =
             a->flags & SHAPE_EMITS &&
             (a->surface.both_sides ||

@@ -305,6 +305,9 @@ static const char *dae_file(const char *what, const char *by)
     return path;
 }
 
+#define ROBUST(value)                                                          \
+    "<boolean name=\"embree_use_robust_intersections\" value=\"" value "\"/>"
+
 static const char *xml_file(const char *what, const char *by)
 {
     char *text = replaced(xml, what, by);
@@ -829,6 +832,10 @@ static void an_xml_is_what_it_says(void **state)
     assert_int_equal(w.samples, 9);
     assert_int_equal(w.max_depth, 5);
     assert_int_equal(w.rr_depth, 5);
+    assert_false(w.robust);
+    scene_free(s);
+    s = load(xml_file("<shape ", ROBUST("true") "<shape "));
+    assert_true(scene_wishes(s).robust);
     scene_free(s);
 }
 
@@ -941,6 +948,10 @@ static void shapes_keep_their_outside(void **state)
 static void what_is_wrong_in_an_xml_is_named(void **state)
 {
     (void)state;
+    xml_refused("<shape ", ROBUST("yes") "<shape ", "<boolean", "\"yes\"",
+                "expected true or false");
+    xml_refused("<shape ", "<boolean name=\"robust\" value=\"true\"/><shape ",
+                "<boolean \"robust\">", "embree_use_robust_intersections", "");
     xml_refused("version=\"3.0.0\"", "version=\"0.6.0\"", ":1: <scene>",
                 "0.6.0", "expected 3.0.0");
     xml_refused("type=\"box\"", "type=\"tent\"", "<rfilter>",
