@@ -30,20 +30,6 @@ struct affine affine_mul(struct affine a, struct affine b)
         affine_vector(&a, column(&b, 2)), affine_point(&a, column(&b, 3)));
 }
 
-struct vec3 affine_vector(const struct affine *a, struct vec3 v)
-{
-    return (struct vec3){
-        a->m[0][0] * v.x + a->m[0][1] * v.y + a->m[0][2] * v.z,
-        a->m[1][0] * v.x + a->m[1][1] * v.y + a->m[1][2] * v.z,
-        a->m[2][0] * v.x + a->m[2][1] * v.y + a->m[2][2] * v.z,
-    };
-}
-
-struct vec3 affine_point(const struct affine *a, struct vec3 p)
-{
-    return vec3_add(affine_vector(a, p), column(a, 3));
-}
-
 double affine_det(const struct affine *a)
 {
     return vec3_dot(vec3_cross(column(a, 0), column(a, 1)), column(a, 2));

@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 
+#include "bsdf/lanes.h"
 #include "bsdf/vec.h"
 
 /** p -> m p + t, row by row: the last column of each row is t. */
@@ -20,8 +21,20 @@ extern const struct affine affine_identity;
 /** First b, then a. */
 struct affine affine_mul(struct affine a, struct affine b);
 
-struct vec3 affine_point(const struct affine *a, struct vec3 p);
-struct vec3 affine_vector(const struct affine *a, struct vec3 v);
+INLINE struct vec3 affine_vector(const struct affine *a, struct vec3 v)
+{
+    return (struct vec3){
+        a->m[0][0] * v.x + a->m[0][1] * v.y + a->m[0][2] * v.z,
+        a->m[1][0] * v.x + a->m[1][1] * v.y + a->m[1][2] * v.z,
+        a->m[2][0] * v.x + a->m[2][1] * v.y + a->m[2][2] * v.z,
+    };
+}
+
+INLINE struct vec3 affine_point(const struct affine *a, struct vec3 p)
+{
+    const struct vec3 t = { a->m[0][3], a->m[1][3], a->m[2][3] };
+    return vec3_add(affine_vector(a, p), t);
+}
 
 /** The determinant of the linear part; negative where it mirrors. */
 double affine_det(const struct affine *a);

@@ -7,6 +7,7 @@
 #define INTEGRATOR_CAMERA_H
 
 #include "integrator/affine.h"
+#include "integrator/wave.h"
 
 struct camera {
     struct affine to_world; /* x to the left, y up, z into the scene; of unit
@@ -27,5 +28,10 @@ struct ray {
  * two numbers in [0, 1) choose (uniformly, by Shirley and Chiu's map). */
 struct ray camera_ray(const struct camera *c, double x, double y, double lens_u,
                       double lens_v);
+
+/** The same of n points, at most WAVE. */
+void camera_rays(const struct camera *c, size_t n, const double *x,
+                 const double *y, const double *lens_u, const double *lens_v,
+                 struct rays *out);
 
 #endif

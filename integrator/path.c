@@ -35,8 +35,10 @@ struct group {
     const struct bsdf *bsdf;
     unsigned lobes;
     double eta;
+    int number; /* of the BSDF in the scene */
     size_t from, n;
 };
+enum { NO_GROUP = WAVE };
 
 struct paths {
     const struct scene *scene;
@@ -70,13 +72,14 @@ struct paths {
     struct vecs wo; /* local */
     size_t groups;
     struct group group[WAVE];
+    uint16_t *group_of_bsdf; /* by its number; NO_GROUP but while sorting */
 
     /* For direct light and to go on. */
     uint64_t row; /* whose numbers u are; 0 for none */
     struct vecs u;
     struct light_samples light;
     struct vecs wi, dir; /* local, and in the world */
-    struct spectrum f[WAVE], sum[WAVE];
+    struct spectrum f[WAVE];
     double pdf[WAVE], weight[WAVE];
     double share[BANDS_MAX][WAVE]; /* a band's weights */
     bool delta[WAVE], wanted[WAVE], blocked[WAVE];
@@ -129,21 +132,50 @@ static const struct vecs *numbers(struct paths *w, uint64_t row)
     return &w->u;
 }
 
-/* Puts those of the first n that are wanted (NULL: all) in the order of their
- * slots. */
-static void line_up(struct paths *w, size_t n, const bool *wanted)
+/* A ray's piece and the octant of its direction; those that are not wanted come
+ * last. */
+enum { OCTANTS = 8, OCTANTS_MAX = OCTANTS * WAVE };
+LANES static void octants(const struct vecs *dir, const uint16_t *piece,
+                          const bool *wanted, size_t n, uint64_t *octant)
 {
-    uint16_t at[WAVE]; /* 1 and what is in a slot */
-    for (size_t i = 0; i < w->slots; i++)
-        at[i] = 0;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const uint64_t x = dir->x[i] < 0 ? 1 : 0, y = dir->y[i] < 0 ? 2 : 0;
+        const uint64_t z = dir->z[i] < 0 ? 4 : 0;
+        octant[i] = OCTANTS * (uint64_t)piece[i] + x + y + z;
+    }
     for (size_t i = 0; i < n; i++)
-        at[w->slot[i]] = !wanted || wanted[i] ? (uint16_t)(i + 1) : 0;
+        octant[i] = wanted[i] ? octant[i] : OCTANTS_MAX;
+}
+
+/* Puts those of n rays that are wanted in the order of pieces, and in a piece
+ * in that of octants, as rays that go the same way are traced faster
+ * together. */
+static void line_up(struct paths *w, size_t n, const struct rays *r)
+{
     struct queue *q = &w->queue;
+    const size_t last = OCTANTS * w->pieces;
+    uint64_t octant[WAVE];
+    uint16_t next[OCTANTS_MAX + 1];
+    uint16_t ray[2 * WAVE]; /* with those that nobody wants */
+    octants(&r->dir, w->piece, w->wanted, n, octant);
+    for (size_t k = 0; k < last; k++)
+        next[k] = 0;
+    next[OCTANTS_MAX] = 0;
+    for (size_t i = 0; i < n; i++)
+        next[octant[i]]++;
     q->n = 0;
-    for (size_t i = 0; i < w->slots; i++) {
-        q->ray[q->n] = (uint16_t)(at[i] - 1);
-        q->piece[q->n] = w->piece_of[i];
-        q->n += at[i] > 0;
+    for (size_t k = 0; k < last; k++) {
+        const uint16_t more = next[k];
+        next[k] = (uint16_t)q->n;
+        q->n += more;
+    }
+    next[OCTANTS_MAX] = WAVE;
+    for (size_t i = 0; i < n; i++)
+        ray[next[octant[i]]++] = (uint16_t)i;
+    for (size_t k = 0; k < q->n; k++) {
+        q->ray[k] = ray[k];
+        q->piece[k] = w->piece[ray[k]];
     }
     w->rays_traced += q->n;
 }
@@ -376,7 +408,16 @@ LANES static void light_weights(size_t n, double several, const double *wi_z,
                     balance(several, light_pdf[i], pdf[i]);
 }
 
-/* One sample of a light for every lit vertex, into sum. */
+/* What a vertex sends on, by its f, of light that arrives there. */
+INLINE void gain(struct paths *w, size_t vertex, double factor,
+                 struct spectrum light)
+{
+    const size_t slot = w->slot[vertex];
+    add(&w->path[slot].radiance, factor, w->beta[slot],
+        spectrum_mul(w->f[vertex], light));
+}
+
+/* One sample of a light for every lit vertex. */
 static void from_light(struct paths *w, int light, const struct vecs *u)
 {
     const struct path_settings *p = w->settings;
@@ -400,16 +441,15 @@ static void from_light(struct paths *w, int light, const struct vecs *u)
         trace_to(&w->hits, n, &w->light.wi, &w->light.point, &w->other);
     for (size_t i = 0; i < n; i++)
         w->wanted[i] = w->light.pdf[i] > 0 && largest(w->f[i]) != 0;
-    line_up(w, n, w->wanted);
+    line_up(w, n, &w->other);
     trace_blocked(w->scene, &w->other, &w->queue, w->blocked);
     const double share = 1.0 / p->light_samples;
     for (size_t i = 0; i < n; i++)
         if (w->wanted[i] && !w->blocked[i])
-            add(&w->sum[i], share * w->weight[i], w->f[i],
-                w->light.radiance[i]);
+            gain(w, i, share * w->weight[i], w->light.radiance[i]);
 }
 
-/* One of a number of uniform directions for every lit vertex, into sum. */
+/* One of a number of uniform directions for every lit vertex. */
 static void from_hemisphere(struct paths *w, const struct vecs *u,
                             double number)
 {
@@ -425,7 +465,7 @@ static void from_hemisphere(struct paths *w, const struct vecs *u,
         }
     to_world(&w->hits, n, &w->wi, &w->dir);
     trace_from(&w->hits, n, &w->dir, &w->other);
-    line_up(w, n, w->wanted);
+    line_up(w, n, &w->other);
     trace_rays(w->scene, &w->other, &w->queue, false, &w->other_met);
     uint16_t there[WAVE], there_n = 0;
     for (size_t k = 0; k < w->queue.n; k++) {
@@ -433,14 +473,14 @@ static void from_hemisphere(struct paths *w, const struct vecs *u,
         if (w->other_met.shape[i])
             there[there_n++] = i;
         else
-            add(&w->sum[i], 1 / number, w->f[i],
-                emission(w->scene, NULL, false, vecs_at(&w->dir, i)));
+            gain(w, i, 1 / number,
+                 emission(w->scene, NULL, false, vecs_at(&w->dir, i)));
     }
     struct hits *h = &w->other_hits;
     trace_places(&w->other, &w->other_met, there, there_n, h);
     for (size_t k = 0; k < there_n; k++)
-        add(&w->sum[there[k]], 1 / number, w->f[there[k]],
-            emission(w->scene, h->shape[k], h->emits[k], (struct vec3){ 0 }));
+        gain(w, there[k], 1 / number,
+             emission(w->scene, h->shape[k], h->emits[k], (struct vec3){ 0 }));
 }
 
 /* Whether a light's samples are uniform directions, each of which sees all. */
@@ -456,8 +496,6 @@ static void direct(struct paths *w, uint64_t row)
     const struct path_settings *p = w->settings;
     const int lights = light_count(w->scene);
     double blinds = 0;
-    for (size_t i = 0; i < w->lit; i++)
-        w->sum[i] = (struct spectrum){ { 0 } };
     for (int i = 0; i < lights; i++)
         blinds += blind(w, i) ? p->light_samples : 0;
     for (int i = 0; i < lights; i++) {
@@ -470,8 +508,6 @@ static void direct(struct paths *w, uint64_t row)
                 from_light(w, i, numbers(w, row));
         }
     }
-    for (size_t i = 0; i < w->lit; i++)
-        add(&w->path[w->slot[i]].radiance, 1, w->beta[w->slot[i]], w->sum[i]);
 }
 
 /* -- from one vertex to the next --------------------------------------------
@@ -513,22 +549,6 @@ static bool weigh(struct paths *w, const struct group *g, size_t i)
     return true;
 }
 
-/* Keeps the rays of the vertices that are wanted. */
-static void keep(struct paths *w)
-{
-    struct rays *r = &w->rays;
-    size_t m = 0;
-    for (size_t i = 0; i < w->n; i++) {
-        w->slot[m] = w->slot[i];
-        vecs_put(&r->origin, m, vecs_at(&r->origin, i));
-        vecs_put(&r->dir, m, vecs_at(&r->dir, i));
-        r->near[m] = r->near[i];
-        r->far[m] = r->far[i];
-        m += w->wanted[i];
-    }
-    w->n = m;
-}
-
 /* Of the rays that are the last of their paths, those that may see light. */
 static void want_light(struct paths *w)
 {
@@ -567,23 +587,24 @@ static void go_on(struct paths *w, uint64_t row, int bounces)
     trace_from(&w->hits, w->n, &w->dir, &w->rays);
     if (bounces + 1 == p->max_depth)
         want_light(w);
-    keep(w);
+    line_up(w, w->n, &w->rays);
 }
 
 /* -- a bounce ---------------------------------------------------------------
  */
 
 /* The group of a BSDF; a new one if need be. */
-static size_t group_of(struct paths *w, const struct shape *a)
+static uint16_t group_of(struct paths *w, const struct shape *a)
 {
-    size_t i = 0;
-    while (i < w->groups && w->group[i].bsdf != a->bsdf)
-        i++;
-    if (i == w->groups)
-        w->group[w->groups++] =
-            (struct group){ a->bsdf, a->claims.lobes, a->claims.eta, 0, 0 };
-    w->group[i].n++;
-    return i;
+    uint16_t *const known = &w->group_of_bsdf[a->surface.bsdf];
+    if (*known == NO_GROUP) {
+        *known = (uint16_t)w->groups;
+        w->group[w->groups++] = (struct group){
+            a->bsdf, a->claims.lobes, a->claims.eta, a->surface.bsdf, 0, 0
+        };
+    }
+    w->group[*known].n++;
+    return *known;
 }
 
 static bool delta_only(const struct group *g)
@@ -591,30 +612,55 @@ static bool delta_only(const struct group *g)
     return !(g->lobes & ~(unsigned)BSDF_DELTA);
 }
 
-/* Vertices of the rays that hit something, in groups. */
+/* Those with delta lobes alone come last, and else groups are in the order of
+ * BSDFs, so that the vertices of a piece are in one that is its own. */
+static bool before(const struct group *a, const struct group *b)
+{
+    return delta_only(a) != delta_only(b) ? delta_only(b)
+                                          : a->number < b->number;
+}
+
+/* Where the vertices of each group begin. */
+static void lay_out(struct paths *w)
+{
+    uint16_t order[WAVE];
+    for (size_t k = 0; k < w->groups; k++) {
+        size_t i = k;
+        for (; i > 0 && before(&w->group[k], &w->group[order[i - 1]]); i--)
+            order[i] = order[i - 1];
+        order[i] = (uint16_t)k;
+    }
+    w->n = w->lit = 0;
+    for (size_t k = 0; k < w->groups; k++) {
+        struct group *g = &w->group[order[k]];
+        g->from = w->n;
+        w->n += g->n;
+        if (!delta_only(g))
+            w->lit = w->n;
+    }
+}
+
+/* Vertices of the rays of the queue that hit something, in groups. */
 static void sort(struct paths *w)
 {
+    const struct queue *q = &w->queue;
     uint16_t ray[WAVE], slot[WAVE], group[WAVE];
-    size_t at[WAVE], next = 0;
+    size_t at[WAVE];
     w->groups = 0;
-    for (size_t i = 0; i < w->n; i++)
-        if (w->met.shape[i])
-            group[i] = (uint16_t)group_of(w, w->met.shape[i]);
-    w->lit = 0;
-    for (int pass = 0; pass < 2; pass++)
-        for (size_t k = 0; k < w->groups; k++)
-            if (delta_only(&w->group[k]) == pass) {
-                at[k] = w->group[k].from = next;
-                next += w->group[k].n;
-                w->lit = pass == 0 ? next : w->lit;
-            }
-    for (size_t i = 0; i < w->n; i++)
-        if (w->met.shape[i]) {
-            const size_t k = at[group[i]]++;
-            ray[k] = (uint16_t)i;
-            slot[k] = w->slot[i];
+    for (size_t k = 0; k < q->n; k++)
+        if (w->met.shape[q->ray[k]])
+            group[k] = group_of(w, w->met.shape[q->ray[k]]);
+    lay_out(w);
+    for (size_t k = 0; k < w->groups; k++) {
+        at[k] = w->group[k].from;
+        w->group_of_bsdf[w->group[k].number] = NO_GROUP;
+    }
+    for (size_t k = 0; k < q->n; k++)
+        if (w->met.shape[q->ray[k]]) {
+            const size_t to = at[group[k]]++;
+            ray[to] = q->ray[k];
+            slot[to] = w->slot[q->ray[k]];
         }
-    w->n = next;
     w->row = 0;
     for (size_t k = 0; k < w->n; k++) {
         w->slot[k] = slot[k];
@@ -634,7 +680,7 @@ static void note_first(struct paths *w)
         w->path[w->slot[i]].normal = vecs_at(&w->hits.n, i);
 }
 
-static void camera_rays(struct paths *w)
+static void leave_camera(struct paths *w)
 {
     const struct camera *c = scene_camera(w->scene);
     struct vecs u, lens = { .x = { 0 } };
@@ -642,20 +688,18 @@ static void camera_rays(struct paths *w)
         w->slot[i] = (uint16_t)i;
         w->piece[i] = w->piece_of[i];
         w->sample[i] = w->sample_of[i];
+        w->wanted[i] = true;
     }
     w->n = w->slots;
     numbers_into(w, w->n, 0, &u);
     if (c->lens_radius > 0)
         numbers_into(w, w->n, 1, &lens);
     for (size_t i = 0; i < w->n; i++) {
-        const size_t k = w->piece[i];
-        const struct ray r = camera_ray(c, w->x[k] + u.x[i], w->y[k] + u.y[i],
-                                        u.z[i], lens.x[i]);
-        vecs_put(&w->rays.origin, i, r.origin);
-        vecs_put(&w->rays.dir, i, r.dir);
-        w->rays.near[i] = r.near;
-        w->rays.far[i] = r.far;
+        u.x[i] += w->x[w->piece[i]];
+        u.y[i] += w->y[w->piece[i]];
     }
+    camera_rays(c, w->n, u.x, u.y, u.z, lens.x, &w->rays);
+    line_up(w, w->n, &w->rays);
 }
 
 static void begin(struct paths *w)
@@ -668,7 +712,7 @@ static void begin(struct paths *w)
         w->albedo_seen[i] = false;
         w->chosen[i] = (struct chosen){ .alone = true };
     }
-    camera_rays(w);
+    leave_camera(w);
 }
 
 const struct path *paths_trace(struct paths *w, uint64_t *rays)
@@ -679,13 +723,12 @@ const struct path *paths_trace(struct paths *w, uint64_t *rays)
     const uint64_t rows = 1 + (lights > 0 ? lights : 1);
     w->rays_traced = 0;
     begin(w);
-    for (int bounces = 0; w->n > 0; bounces++) {
+    for (int bounces = 0; w->queue.n > 0; bounces++) {
         const uint64_t row = 2 + (uint64_t)bounces * rows;
-        line_up(w, w->n, NULL);
         trace_rays(w->scene, &w->rays, &w->queue, bounces == 0, &w->met);
-        for (size_t i = 0; counts(p, bounces) && i < w->n; i++)
-            if (!w->met.shape[i])
-                see_background(w, i);
+        for (size_t k = 0; counts(p, bounces) && k < w->queue.n; k++)
+            if (!w->met.shape[w->queue.ray[k]])
+                see_background(w, w->queue.ray[k]);
         sort(w);
         if (counts(p, bounces))
             see_emission(w);
@@ -709,16 +752,25 @@ struct paths *paths_new(const struct scene *s, const struct path_settings *p,
                         struct sampler sampler)
 {
     struct paths *w = calloc(1, sizeof *w);
-    if (w) {
-        w->scene = s;
-        w->settings = p;
-        w->sampler = sampler;
+    uint16_t *group = malloc((s->bsdfs + 1) * sizeof *group);
+    if (!w || !group) {
+        free(w);
+        free(group);
+        return NULL;
     }
+    for (size_t i = 0; i < s->bsdfs; i++)
+        group[i] = NO_GROUP;
+    w->scene = s;
+    w->settings = p;
+    w->sampler = sampler;
+    w->group_of_bsdf = group;
     return w;
 }
 
 void paths_free(struct paths *w)
 {
+    if (w)
+        free(w->group_of_bsdf);
     free(w);
 }
 

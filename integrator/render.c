@@ -12,7 +12,7 @@
 
 #include "bsdf/cli.h"
 
-enum { TILE = 16, PASS = 32 };
+enum { TILE = 16, PASS = 64 };
 
 /* What a pixel's samples add up to. */
 struct sums {

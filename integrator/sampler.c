@@ -94,6 +94,16 @@ static void seeds_of(const struct sampler *s, uint64_t row,
     }
 }
 
+LANES static void independent(const struct sampler_lanes *lanes, uint64_t row,
+                              uint64_t *stream, uint64_t *index)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < lanes->n; i++) {
+        stream[i] = lanes->pixel[lanes->piece[i]];
+        index[i] = row << 32 | lanes->sample[i];
+    }
+}
+
 void sampler_row(const struct sampler *s, uint64_t row,
                  const struct sampler_lanes *lanes, struct vecs *out)
 {
@@ -104,9 +114,6 @@ void sampler_row(const struct sampler *s, uint64_t row,
         return;
     }
     uint64_t stream[WAVE], index[WAVE];
-    for (size_t i = 0; i < lanes->n; i++) {
-        stream[i] = lanes->pixel[lanes->piece[i]];
-        index[i] = row << 32 | lanes->sample[i];
-    }
+    independent(lanes, row, stream, index);
     rng_uniform_each(s->seed, lanes->n, stream, index, out->x, out->y, out->z);
 }

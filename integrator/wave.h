@@ -20,7 +20,7 @@
 enum {
     WAVE = LANES_MAX,
     PACKET = 16, /* rays that Embree takes at a time */
-    PIECE = 32   /* samples of a pixel */
+    PIECE = 64   /* samples of a pixel */
 };
 
 struct vecs {

@@ -22,7 +22,7 @@
 #include <xmmintrin.h>
 #endif
 
-enum { TILE = 16, PACKET = 16 };
+enum { TILE = 16, BUNCH = 16 };
 enum { SINGLE, COHERENT }; /* rays */
 static const float pi = 3.14159265f;
 /* A ray starts and ends this far off, of the distance from the world's origin
@@ -262,10 +262,10 @@ static struct v3 path(const struct view *w, struct RTCIntersectContext *c,
 
 /* The rays of a packet of samples of one pixel; valid is -1 of those. */
 static void aim(const struct view *w, int x, int y, int n, struct random *r,
-                int valid[PACKET], struct RTCRayHit16 *p)
+                int valid[BUNCH], struct RTCRayHit16 *p)
 {
     const struct camera *camera = &w->scene->camera;
-    for (int i = 0; i < PACKET; i++) {
+    for (int i = 0; i < BUNCH; i++) {
         const struct v3 d =
             add(add(w->corner, scale(w->right, (float)x + uniform(r))),
                 scale(w->down, (float)y + uniform(r)));
@@ -290,7 +290,7 @@ static struct v3 packet(const struct view *w, struct RTCIntersectContext c[2],
                         int x, int y, int n, struct random *r,
                         struct counts *count)
 {
-    alignas(64) int valid[PACKET];
+    alignas(64) int valid[BUNCH];
     struct RTCRayHit16 p;
     struct v3 sum = v3(0, 0, 0);
     aim(w, x, y, n, r, valid, &p);
@@ -314,10 +314,10 @@ static void pixel(const struct view *w, struct RTCIntersectContext c[2], int x,
     struct random r = random_at(
         w->seed, (uint64_t)y * (uint64_t)w->scene->camera.width + (uint64_t)x);
     struct v3 sum = v3(0, 0, 0);
-    for (int i = 0; i < w->samples; i += PACKET) {
+    for (int i = 0; i < w->samples; i += BUNCH) {
         const int left = w->samples - i;
         sum = add(sum,
-                  packet(w, c, x, y, left < PACKET ? left : PACKET, &r, count));
+                  packet(w, c, x, y, left < BUNCH ? left : BUNCH, &r, count));
     }
     rgb[0] = sum.x / (float)w->samples;
     rgb[1] = sum.y / (float)w->samples;

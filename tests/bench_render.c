@@ -245,7 +245,7 @@ static void print_memory(const struct scene *s)
 int main(int argc, char **argv)
 {
     static struct run run[KINDS][RUNS_MAX];
-    const int samples = argc > 1 ? atoi(argv[1]) : 16;
+    const int samples = argc > 1 ? atoi(argv[1]) : 64;
     const int runs = argc > 2 ? atoi(argv[2]) : 5;
     struct tracer_scene t;
     struct err err = { "expected samples from 1 and runs from 1 to 99" };
