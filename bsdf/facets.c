@@ -6,25 +6,27 @@
  */
 #include "bsdf/facets.h"
 
-LANES static uint64_t differences(size_t n, const double *x)
+LANES static uint64_t differences(size_t n, struct dirs w)
 {
-    const uint64_t first = fm_bits(x[0]);
+    const uint64_t x = fm_bits(w.x[0]), y = fm_bits(w.y[0]);
+    const uint64_t z = fm_bits(w.z[0]);
     uint64_t differ = 0;
     _Pragma("omp simd reduction(|:differ)") for (size_t i = 0; i < n; i++)
-        differ |= fm_bits(x[i]) ^ first;
+        differ |=
+        (fm_bits(w.x[i]) ^ x) | (fm_bits(w.y[i]) ^ y) | (fm_bits(w.z[i]) ^ z);
     return differ;
 }
 
 bool dirs_same(size_t n, struct dirs w)
 {
-    return !(differences(n, w.x) | differences(n, w.y) | differences(n, w.z));
+    return differences(n, w) == 0;
 }
 
 LANES static void fill(size_t n, double *x)
 {
     const double first = x[0];
     LANES_LOOP
-    for (size_t i = 1; i < n; i++)
+    for (size_t i = 0; i < n; i++)
         x[i] = first;
 }
 

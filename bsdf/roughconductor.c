@@ -231,9 +231,9 @@ LANES static void g1_lanes(size_t n, struct dirs wo, struct lanes *l)
 }
 
 /* What depends on wo alone of the next k directions of a call for n, from `at`
- * on; once if all n are the same. */
-static void look(const struct roughconductor *m, size_t n, size_t at, size_t k,
-                 struct dirs wo, struct lanes *l)
+ * on; once if all n are the same, and in the first lane alone. */
+static void glance(const struct roughconductor *m, size_t n, size_t at,
+                   size_t k, struct dirs wo, struct lanes *l)
 {
     if (at == 0)
         l->one = dirs_same(n, wo);
@@ -242,7 +242,14 @@ static void look(const struct roughconductor *m, size_t n, size_t at, size_t k,
     const struct dirs o = dirs_from(wo, at);
     facets_lambda_many(m->facets, l->one ? 1 : k, o, l->lo);
     g1_lanes(l->one ? 1 : k, o, l);
-    if (l->one) {
+}
+
+/* The same in every lane. */
+static void look(const struct roughconductor *m, size_t n, size_t at, size_t k,
+                 struct dirs wo, struct lanes *l)
+{
+    glance(m, n, at, k, wo, l);
+    if (l->one && at == 0) {
         facets_fill(k, l->lo);
         facets_fill(k, l->g1);
     }
@@ -267,10 +274,19 @@ LANES static void shape_lanes(const struct roughconductor *m, size_t n,
         shape_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, wi, l);
 }
 
+/* After a glance. */
 INLINE void density_loop(struct facets facets, bool visible, size_t n,
                          struct dirs wo, struct dirs wi, const struct lanes *l,
                          double *p)
 {
+    if (l->one) {
+        const struct vec3 o = dirs_at(wo, 0);
+        const double g1 = l->g1[0];
+        LANES_LOOP
+        for (size_t i = 0; i < n; i++)
+            p[i] = density(facets, visible, o, dirs_at(wi, i), g1);
+        return;
+    }
     LANES_LOOP
     for (size_t i = 0; i < n; i++)
         p[i] =
@@ -419,7 +435,7 @@ static void pdf_many(const void *state, size_t n, struct dirs wo,
     for (size_t at = 0, k; at < n; at += k) {
         const struct dirs o = dirs_from(wo, at), i = dirs_from(wi, at);
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
-        look(m, n, at, k, wo, &l);
+        glance(m, n, at, k, wo, &l);
         if (m->sample_visible)
             density_visible(m->facets, k, o, i, &l, p + at);
         else

@@ -553,7 +553,7 @@ LANES static void keys_of(const double *x, const double *y, const double *z,
 
 /* Counts n directions by cells, those without a pdf in a last one. */
 static void count(const struct finder *f, const struct sought *k,
-                  const double *pdf, size_t n, long *counts)
+                  const double *pdf, size_t n, unsigned *counts)
 {
     for (size_t i = 0; i < n; i++) {
         const int strip = f->strip[k->strip[i]], slice = f->slice[k->slice[i]];
@@ -573,7 +573,7 @@ LANES static double total(size_t n, const double *x)
 
 /* The weights are summed where they are asked for, else 0 is returned. */
 static double grid_sample(const struct bsdf *b, struct vec3 wo, bool weights,
-                          long *counts)
+                          unsigned *counts)
 {
     static double u[3][BATCH], o[3][BATCH];
     static struct drawn d;
@@ -652,12 +652,15 @@ static double grid_error(const struct bsdf *b, struct vec3 wo,
 static struct grid_test grid_ours(const struct bsdf *b, struct vec3 wo,
                                   bool weights, bool check)
 {
-    static long counts[CELLS + 1];
+    static unsigned counted[CELLS + 1];
+    static long counts[CELLS];
     static double mass[CELLS];
     struct grid_test t;
-    memset(counts, 0, sizeof counts);
+    memset(counted, 0, sizeof counted);
     const double start = seconds();
-    t.weight = grid_sample(b, wo, weights, counts);
+    t.weight = grid_sample(b, wo, weights, counted);
+    for (int i = 0; i < CELLS; i++)
+        counts[i] = counted[i];
     const double middle = seconds();
     grid_integrate(b, wo, mass);
     t.statistic =

@@ -7,7 +7,7 @@
 #include "bsdf/fastmath.h"
 #include "bsdf/lanes.h"
 
-enum { ORDER = QUADRATURE_ORDER, NODES = QUADRATURE_NODES };
+enum { ORDER = QUADRATURE_ORDER, NODES = QUADRATURE_NODES, WIDE = 8 };
 
 /* The integrand, and room for a batch of directions and what it is there. */
 struct over {
@@ -24,36 +24,42 @@ static bool over_make(struct over *o, size_t batch)
                : batch / NODES > QUADRATURE_RULES ? QUADRATURE_RULES
                                                   : batch / NODES;
     o->size = o->rules * NODES;
-    double *room = malloc((4 + (size_t)o->parts) * o->size * sizeof *room);
+    const size_t each = o->size + WIDE;
+    double *room = malloc((4 + (size_t)o->parts) * each * sizeof *room);
     o->x = room;
     if (!room)
         return false;
-    o->y = room + o->size;
-    o->z = room + 2 * o->size;
-    o->sine = room + 3 * o->size;
-    o->value = room + 4 * o->size;
+    o->y = room + each;
+    o->z = room + 2 * each;
+    o->sine = room + 3 * each;
+    o->value = room + 4 * each;
     return true;
 }
 
-/* The directions of the nodes of n rules, ORDER angles each way. */
+/* The directions of the nodes of n rules, ORDER angles each way.  A row is
+ * written as a whole vector, of which the next row takes back what is too
+ * much. */
 LANES static void directions(const struct over *over, size_t n,
                              const double *theta, const double *phi)
 {
     const struct over o = *over;
     double st[QUADRATURE_RULES * ORDER], ct[QUADRATURE_RULES * ORDER];
-    double sp[QUADRATURE_RULES * ORDER], cp[QUADRATURE_RULES * ORDER];
+    double sp[QUADRATURE_RULES * ORDER + WIDE];
+    double cp[QUADRATURE_RULES * ORDER + WIDE];
     LANES_LOOP
     for (size_t i = 0; i < n * ORDER; i++)
         fm_sincos(theta[i], &st[i], &ct[i]);
     LANES_LOOP
     for (size_t i = 0; i < n * ORDER; i++)
         fm_sincos(phi[i], &sp[i], &cp[i]);
+    for (size_t i = n * ORDER; i < n * ORDER + WIDE; i++)
+        sp[i] = cp[i] = 0;
     for (size_t rule = 0; rule < n * ORDER; rule += ORDER)
         for (size_t row = rule; row < rule + ORDER; row++) {
             const double s = st[row], c = ct[row];
             const size_t at = row * ORDER;
             LANES_LOOP
-            for (size_t k = 0; k < ORDER; k++) {
+            for (size_t k = 0; k < WIDE; k++) {
                 o.x[at + k] = s * cp[rule + k];
                 o.y[at + k] = s * sp[rule + k];
                 o.z[at + k] = c;

@@ -75,24 +75,25 @@ void subject_clear(struct subject *s)
     s->energy = NULL;
 }
 
-/* The same direction many times. */
-struct repeated {
-    double x[SUBJECT_BATCH], y[SUBJECT_BATCH], z[SUBJECT_BATCH];
-};
-
-LANES static void fill(size_t n, double *x, double value)
+/* The same direction n times, until another is asked for. A thread keeps the
+ * last one, as most calls are about that. */
+static struct dirs repeat(struct vec3 w, size_t n)
 {
-    LANES_LOOP
-    for (size_t i = 0; i < n; i++)
-        x[i] = value;
-}
-
-static struct dirs repeat(struct repeated *r, struct vec3 w, size_t n)
-{
-    fill(n, r->x, w.x);
-    fill(n, r->y, w.y);
-    fill(n, r->z, w.z);
-    return (struct dirs){ r->x, r->y, r->z };
+    static _Thread_local struct {
+        struct vec3 w;
+        size_t n;
+        double x[SUBJECT_BATCH], y[SUBJECT_BATCH], z[SUBJECT_BATCH];
+    } last;
+    if (memcmp(&last.w, &w, sizeof w) != 0) {
+        last.w = w;
+        last.n = 0;
+    }
+    for (; last.n < n; last.n++) {
+        last.x[last.n] = w.x;
+        last.y[last.n] = w.y;
+        last.z[last.n] = w.z;
+    }
+    return (struct dirs){ last.x, last.y, last.z };
 }
 
 static struct dirs from(struct dirs d, size_t at)
@@ -109,8 +110,7 @@ void subject_eval(const struct subject *s, size_t n, struct dirs wi,
                   struct spectrum *f)
 {
     const size_t step = subject_batch(s);
-    struct repeated r;
-    const struct dirs wo = repeat(&r, s->wo, least(n, step));
+    const struct dirs wo = repeat(s->wo, least(n, step));
     for (size_t at = 0; at < n; at += step)
         bsdf_eval_many(s->bsdf, least(n - at, step), wo, from(wi, at), f + at);
 }
@@ -119,8 +119,7 @@ void subject_eval_back(const struct subject *s, size_t n, struct dirs wi,
                        struct spectrum *f)
 {
     const size_t step = subject_batch(s);
-    struct repeated r;
-    const struct dirs wo = repeat(&r, s->wo, least(n, step));
+    const struct dirs wo = repeat(s->wo, least(n, step));
     for (size_t at = 0; at < n; at += step)
         bsdf_eval_many(s->bsdf, least(n - at, step), from(wi, at), wo, f + at);
 }
@@ -128,8 +127,7 @@ void subject_eval_back(const struct subject *s, size_t n, struct dirs wi,
 void subject_pdf(const struct subject *s, size_t n, struct dirs wi, double *pdf)
 {
     const size_t step = subject_batch(s);
-    struct repeated r;
-    const struct dirs wo = repeat(&r, s->wo, least(n, step));
+    const struct dirs wo = repeat(s->wo, least(n, step));
     for (size_t at = 0; at < n; at += step)
         bsdf_pdf_many(s->bsdf, least(n - at, step), wo, from(wi, at), pdf + at);
 }
@@ -138,8 +136,7 @@ void subject_sample(const struct subject *s, size_t n, struct dirs u,
                     struct bsdf_sample *out)
 {
     const size_t step = subject_batch(s);
-    struct repeated r;
-    const struct dirs wo = repeat(&r, s->wo, least(n, step));
+    const struct dirs wo = repeat(s->wo, least(n, step));
     for (size_t at = 0; at < n; at += step)
         bsdf_sample_many(s->bsdf, least(n - at, step), wo, from(u, at),
                          out + at);
@@ -150,8 +147,7 @@ void subject_draw(const struct subject *s, struct rng rng, uint64_t first,
 {
     double x[SUBJECT_BATCH], y[SUBJECT_BATCH], z[SUBJECT_BATCH];
     const size_t step = subject_batch(s);
-    struct repeated r;
-    const struct dirs wo = repeat(&r, s->wo, least(n, step)), u = { x, y, z };
+    const struct dirs wo = repeat(s->wo, least(n, step)), u = { x, y, z };
     for (size_t at = 0; at < n; at += step) {
         rng_uniform_many(rng, first + at, least(n - at, step), x, y, z);
         bsdf_sample_many(s->bsdf, least(n - at, step), wo, u, out + at);
@@ -163,8 +159,7 @@ void subject_draw_into(const struct subject *s, struct rng rng, uint64_t first,
 {
     double x[SUBJECT_BATCH], y[SUBJECT_BATCH], z[SUBJECT_BATCH];
     const size_t step = subject_batch(s);
-    struct repeated r;
-    const struct dirs wo = repeat(&r, s->wo, least(n, step)), u = { x, y, z };
+    const struct dirs wo = repeat(s->wo, least(n, step)), u = { x, y, z };
     for (size_t at = 0; at < n; at += step) {
         rng_uniform_many(rng, first + at, least(n - at, step), x, y, z);
         bsdf_sample_into(s->bsdf, least(n - at, step), wo, u,
