@@ -108,16 +108,28 @@ LANES static void ggx_views(struct facets f, size_t n, struct dirs w,
     }
 }
 
-LANES static void ggx_lanes(struct facets f, size_t n, const struct views *v,
-                            struct dirs u, double *mx, double *my, double *mz)
+/* one: there is one view for all lanes, which the compiler then keeps. */
+INLINE void ggx_loop(struct facets f, size_t n, const struct views *v, bool one,
+                     struct dirs u, double *mx, double *my, double *mz)
 {
     LANES_LOOP
     for (size_t i = 0; i < n; i++) {
-        const struct vec3 w = { v->ggx.sine[i], 0, v->ggx.cosine[i] };
+        const size_t k = one ? 0 : i;
+        const struct vec3 w = { v->ggx.sine[k], 0, v->ggx.cosine[k] };
         const struct vec3 m =
-            facets_stretch(f, v->x[i], v->y[i], ggx_visible(w, u.x[i], u.y[i]));
+            facets_stretch(f, v->x[k], v->y[k], ggx_visible(w, u.x[i], u.y[i]));
         mx[i] = m.x, my[i] = m.y, mz[i] = m.z;
     }
+}
+
+LANES static void ggx_lanes(struct facets f, size_t n, const struct views *v,
+                            bool one, struct dirs u, double *mx, double *my,
+                            double *mz)
+{
+    if (one)
+        ggx_loop(f, n, v, true, u, mx, my, mz);
+    else
+        ggx_loop(f, n, v, false, u, mx, my, mz);
 }
 
 LANES static void beckmann_views(struct facets f, size_t n, struct dirs w,
@@ -146,13 +158,14 @@ INLINE struct beckmann_seen beckmann_at(const struct views *v, size_t i)
 }
 
 /* Slopes along and across w, and which of them are not to be trusted. */
-LANES static void slope_lanes(size_t n, const struct views *v, struct dirs u,
-                              double *x, double *y, uint64_t *late)
+INLINE void slope_loop(size_t n, const struct views *v, bool one, struct dirs u,
+                       double *x, double *y, uint64_t *late)
 {
     LANES_LOOP
     for (size_t i = 0; i < n; i++) {
         bool arrived;
-        x[i] = beckmann_slope_soon(beckmann_at(v, i), u.x[i], &arrived);
+        x[i] =
+            beckmann_slope_soon(beckmann_at(v, one ? 0 : i), u.x[i], &arrived);
         late[i] = arrived ? 0 : 1;
     }
     LANES_LOOP
@@ -163,50 +176,62 @@ LANES static void slope_lanes(size_t n, const struct views *v, struct dirs u,
     }
 }
 
-LANES static void stretch_lanes(struct facets f, size_t n,
-                                const struct views *v, double *mx, double *my,
-                                double *mz)
+LANES static void slope_lanes(size_t n, const struct views *v, bool one,
+                              struct dirs u, double *x, double *y,
+                              uint64_t *late)
+{
+    if (one)
+        slope_loop(n, v, true, u, x, y, late);
+    else
+        slope_loop(n, v, false, u, x, y, late);
+}
+
+INLINE void stretch_loop(struct facets f, size_t n, const struct views *v,
+                         bool one, double *mx, double *my, double *mz)
 {
     LANES_LOOP
     for (size_t i = 0; i < n; i++) {
-        const struct vec3 m = facets_stretch(f, v->x[i], v->y[i],
+        const size_t k = one ? 0 : i;
+        const struct vec3 m = facets_stretch(f, v->x[k], v->y[k],
                                              (struct vec3){ mx[i], my[i], 1 });
         mx[i] = m.x, my[i] = m.y, mz[i] = m.z;
     }
 }
 
+LANES static void stretch_lanes(struct facets f, size_t n,
+                                const struct views *v, bool one, double *mx,
+                                double *my, double *mz)
+{
+    if (one)
+        stretch_loop(f, n, v, true, mx, my, mz);
+    else
+        stretch_loop(f, n, v, false, mx, my, mz);
+}
+
 static void beckmann_lanes(struct facets f, size_t n, const struct views *v,
-                           struct dirs u, double *mx, double *my, double *mz)
+                           bool one, struct dirs u, double *mx, double *my,
+                           double *mz)
 {
     uint64_t late[LANES_MAX];
-    slope_lanes(n, v, u, mx, my, late);
+    slope_lanes(n, v, one, u, mx, my, late);
     for (size_t i = 0; i < n; i++) {
         if (late[i] & 1)
-            mx[i] = beckmann_slope_surely(v->beckmann.a[i], u.x[i]);
+            mx[i] = beckmann_slope_surely(v->beckmann.a[one ? 0 : i], u.x[i]);
         if (late[i] & 2)
             my[i] = fm_probit_far(u.y[i], fm_probit_w(u.y[i]));
     }
-    stretch_lanes(f, n, v, mx, my, mz);
+    stretch_lanes(f, n, v, one, mx, my, mz);
 }
 
-void facets_visible_many(struct facets f, size_t n, struct dirs w,
+void facets_visible_many(struct facets f, size_t n, struct dirs w, bool one,
                          struct dirs u, double *mx, double *my, double *mz)
 {
     struct views v;
-    const bool one = dirs_same(n, w);
-    const size_t views = one ? 1 : n;
-    if (f.family == NDF_GGX)
-        ggx_views(f, views, w, &v);
-    else
-        beckmann_views(f, views, w, &v);
-    if (one) {
-        const size_t ggx = offsetof(struct views, ggx) + sizeof v.ggx;
-        const size_t size = f.family == NDF_GGX ? ggx : sizeof v;
-        for (size_t k = 0; k < size / sizeof v.x; k++)
-            fill(n, (double *)&v + k * LANES_MAX);
+    if (f.family == NDF_GGX) {
+        ggx_views(f, one ? 1 : n, w, &v);
+        ggx_lanes(f, n, &v, one, u, mx, my, mz);
+    } else {
+        beckmann_views(f, one ? 1 : n, w, &v);
+        beckmann_lanes(f, n, &v, one, u, mx, my, mz);
     }
-    if (f.family == NDF_GGX)
-        ggx_lanes(f, n, &v, u, mx, my, mz);
-    else
-        beckmann_lanes(f, n, &v, u, mx, my, mz);
 }

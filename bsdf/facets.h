@@ -164,10 +164,10 @@ void facets_lambda_many(struct facets f, size_t n, struct dirs w,
                         double *lambda);
 
 /** Normals as of facets_all and facets_visible, n <= LANES_MAX, from u.x and
- * u.y. */
+ * u.y; one: all w are the same, as of dirs_same. */
 void facets_all_many(struct facets f, size_t n, struct dirs u, double *mx,
                      double *my, double *mz);
-void facets_visible_many(struct facets f, size_t n, struct dirs w,
+void facets_visible_many(struct facets f, size_t n, struct dirs w, bool one,
                          struct dirs u, double *mx, double *my, double *mz);
 
 #endif

@@ -454,7 +454,7 @@ static void sample_many(const void *state, size_t n, struct dirs wo,
         look(m, n, at, k, wo, &l);
         const struct bsdf_samples to = bsdf_samples_from(&out, at);
         if (m->sample_visible) {
-            facets_visible_many(m->facets, k, o, v, l.hx, l.hy, l.hz);
+            facets_visible_many(m->facets, k, o, l.one, v, l.hx, l.hy, l.hz);
             draw_visible(m->facets, k, o, &l, &to);
         } else {
             facets_all_many(m->facets, k, v, l.hx, l.hy, l.hz);

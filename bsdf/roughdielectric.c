@@ -301,6 +301,7 @@ static void sample_many(const void *state, size_t n, struct dirs wo,
     struct lanes l;
     for (size_t at = 0, k; at < n; at += k) {
         const struct dirs o = dirs_from(wo, at), v = dirs_from(u, at);
+        const struct dirs above = { l.ox, l.oy, l.oz };
         k = n - at < LANES_MAX ? n - at : LANES_MAX;
         look(m, k, o, l.lo);
         for (size_t i = 0; i < k; i++) {
@@ -308,8 +309,8 @@ static void sample_many(const void *state, size_t n, struct dirs wo,
             l.ox[i] = up.x, l.oy[i] = up.y, l.oz[i] = up.z;
         }
         if (m->sample_visible)
-            facets_visible_many(m->facets, k, (struct dirs){ l.ox, l.oy, l.oz },
-                                v, l.hx, l.hy, l.hz);
+            facets_visible_many(m->facets, k, above, dirs_same(k, above), v,
+                                l.hx, l.hy, l.hz);
         else
             facets_all_many(m->facets, k, v, l.hx, l.hy, l.hz);
         for (size_t i = 0; i < k; i++) {
