@@ -26,13 +26,10 @@ enum {
     OPT_DIRECT,
     OPT_RR_DEPTH,
     OPT_RR_PROBABILITY,
-    OPT_SEED,
     OPT_SAMPLER,
     OPT_COMPAT,
     OPT_LENIENT,
     OPT_ROBUST,
-    OPT_RGB,
-    OPT_IOR_PATH,
     OPT_EXPOSURE,
     OPT_QUIET,
     OPT_COMPARE,
@@ -48,7 +45,7 @@ enum { FILES_MAX = 16 };
 struct request {
     struct render_settings render;
     struct load_options load;
-    struct bands bands;
+    struct cli_shared shared;
     bool has_samples, has_depth, has_rr_depth, only_last, robust, quiet;
     double lens_radius, focal_distance; /* NaN for the scene's */
     const char *camera, *environment;
@@ -82,7 +79,6 @@ static const struct argp_option options[] = {
     { "cell", 'p', "X Y DX DY", 0, "render this part alone, four arguments",
       0 },
     { "exposure", OPT_EXPOSURE, "F", 0, "factor for the PNG; 1", 0 },
-    { "seed", OPT_SEED, "S", 0, "of the random numbers; 1", 0 },
     { "sampler", OPT_SAMPLER, "KIND", 0,
       "independent (if not given), or ldsampler: less noise, and standard "
       "errors "
@@ -126,11 +122,7 @@ static const struct argp_option options[] = {
       0 },
     { "environment", 'e', "FILE", 0,
       "an EXR that surrounds the scene, latitude by longitude", 0 },
-    { "rgb", OPT_RGB, "METHOD", 0,
-      "metals in R, G, B by fit (if not given), average or fixed:A,B,C", 0 },
-    { "ior-path", OPT_IOR_PATH, "DIR", 0,
-      "a refractiveindex.info database (or BSDF_IOR_PATH)", 0 },
-    { 0, 0, 0, 0, "Comparison:", 4 },
+    { 0, 0, 0, 0, "Comparison:", 5 },
     { "compare", OPT_COMPARE, 0, 0,
       "two EXRs: are they estimates of one picture?  Two PNGs: how alike are "
       "their blocks?",
@@ -305,8 +297,6 @@ static bool other(struct request *r, int key, char *arg,
         return true;
     case 'D':
         return define(r, arg, err);
-    case OPT_SEED:
-        return cli_count(&r->render.seed, "--seed", arg, 0, INT64_MAX, err);
     case OPT_SAMPLER:
         if (!word(&choice, "--sampler", arg, samplers, err))
             return false;
@@ -316,10 +306,6 @@ static bool other(struct request *r, int key, char *arg,
         return cli_number(&r->exposure, "--exposure", arg, 1e-9, 1e9, err);
     case OPT_COMPAT:
         return compat_parse(&r->load.compat, arg, err);
-    case OPT_RGB:
-        return bands_parse_rgb(&r->bands, arg, err);
-    case OPT_IOR_PATH:
-        return cli_ior_path(arg, err);
     case OPT_BLOCK:
         return whole(&r->comparing.block, "--block", arg, 1, 65535, err);
     case OPT_SIGNIFICANCE:
@@ -328,6 +314,17 @@ static bool other(struct request *r, int key, char *arg,
     default:
         return err_set(err, "unknown option");
     }
+}
+
+/* What all options say together. */
+static bool agree(struct request *r, struct err *err)
+{
+    r->render.seed = r->shared.seed;
+    return r->shared.bands.count == 3 ||
+           err_set(err,
+                   "--nm: %d wavelengths: expected three, for a picture's "
+                   "red, green and blue",
+                   r->shared.bands.count);
 }
 
 static error_t option(int key, char *arg, struct argp_state *state)
@@ -343,7 +340,11 @@ static error_t option(int key, char *arg, struct argp_state *state)
             r->arg[r->args++] = arg;
         break;
     case ARGP_KEY_INIT:
+        state->child_inputs[0] = &r->shared;
+        break;
     case ARGP_KEY_END:
+        ok = agree(r, &err);
+        break;
     case ARGP_KEY_FINI:
     case ARGP_KEY_SUCCESS:
     case ARGP_KEY_ERROR:
@@ -473,7 +474,7 @@ static bool save(const struct request *r, const struct render_result *made,
 /* Loads, renders, writes; an exit status. */
 static int draw(struct request *r, const char *command, struct err *err)
 {
-    struct scene *s = scene_load(r->arg[0], &r->bands, &r->load, err);
+    struct scene *s = scene_load(r->arg[0], &r->shared.bands, &r->load, err);
     struct render_result made = { .film = NULL };
     char name[256];
     bool ok = s && (scene_camera(s) ||
@@ -607,10 +608,9 @@ int main(int argc, char **argv)
                               .only_bounce = -1,
                               .light_samples = 1,
                               .rr_depth = 5 },
-                    .samples = 1,
-                    .seed = 1 },
+                    .samples = 1 },
+        .shared = { .bands = bands_default, .seed = 1 },
         .load = { .warn = warn },
-        .bands = bands_default,
         .lens_radius = NAN,
         .focal_distance = NAN,
         .exposure = 1,
@@ -619,9 +619,12 @@ int main(int argc, char **argv)
     char *command = command_of(argc, argv);
     gsl_set_error_handler_off();
     argp_err_exit_status = EXIT_REQUEST;
+    const struct argp_child shared[] = {
+        { &cli_shared_argp, 0, "Colours, random numbers:", 4 }, { 0 }
+    };
     argp_parse(&(struct argp){ options, option,
                                "SCENE\n--compare A.exr B.exr\n--measure A.exr",
-                               about, 0, 0, 0 },
+                               about, shared, 0, 0 },
                argc, argv, 0, NULL, &r);
     int status = run(&r, command ? command : "bsdf-render", &err);
     if (status == EXIT_REQUEST)
