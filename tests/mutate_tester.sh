@@ -20,6 +20,7 @@ significance 0 by default|validate/subject.c|test_checks|s/\.significance = 1e-6
 a level an integer|validate/run.c|test_statistics|s/^\( *\)double level = /\1int level = (int)/
 the pools are dropped|validate/check_chi2.c|test_decisions|s/cell_add(&o\.pool\[[^;]*;/(void)pool_apart_below;/
 the emptiest pool is dropped|validate/check_chi2.c|test_decisions|s/cell_add(&o\.pool\[expected >= pool_apart_below\], c);/if (expected >= pool_apart_below) cell_add(\&o.pool[1], c);/
+pooled cells are never the worst|validate/check_chi2.c|test_decisions|s/if (!(fabs(r) > 2))/if (!(fabs(r) > 2) || cell[i].share.value * (double)samples < pool_below)/
 cells are chosen by what was observed|validate/check_chi2.c|test_decisions|s/^\( *\)if (expected < pool_below)$/\1if (c.count == 0) continue;\n&/
 expectations are rescaled|validate/check_chi2.c|test_decisions|s/c\.share\.value = fmax(c\.share\.value, 0);/c.share.value = fmax(c.share.value, 0) * (i + 1 < n ? 1 - (double)cell[n - 1].count \/ (double)samples : 0);/
 refused samples are left out|validate/check_chi2.c|test_decisions|s/survey_refusal(v), v->refused/{ 0, 0 }, 0/

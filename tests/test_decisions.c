@@ -128,26 +128,83 @@ static void an_error_of_integration_is_no_mistake(void **state)
     subject_clear(&s);
 }
 
+/* Takes samples from all bins that have many, one after the other, in none of
+ * which that is seen. */
+static void take_evenly(struct survey *v, uint64_t samples)
+{
+    for (size_t i = 0; samples > 0; i = (i + 1) % partition_bins(v->partition))
+        if (v->count[i] > 100) {
+            v->count[i]--;
+            samples--;
+        }
+}
+
+/* Adds samples to the first bins that expect from low to high; how many. */
+static uint64_t put(struct survey *v, double low, double high, uint64_t each,
+                    size_t bins)
+{
+    uint64_t samples = 0;
+    for (size_t i = 0; i < partition_bins(v->partition) && bins > 0; i++) {
+        const double expected = v->mass[i].value * (double)v->samples;
+        if (expected >= low && expected < high) {
+            v->count[i] += each;
+            samples += each;
+            bins--;
+        }
+    }
+    return samples;
+}
+
+/* A few more in each of many, which is much for none of them: the pools know,
+ * that of bins which expect less than 1, and that of those which expect more.
+ */
 static void samples_in_nearly_empty_bins_count(void **state)
 {
     (void)state;
-    for (int some = 0; some < 2; some++) { /* below 1, and 1 to 100 */
-        struct subject s = look(1, 100000);
+    for (int some = 0; some < 2; some++) {
+        struct subject s = look(1, 1000000);
         struct survey *v = &s.survey;
-        uint64_t moved = 0;
-        for (size_t i = 0; i < partition_bins(v->partition) && moved < 400;
-             i++) {
-            const double expected = v->mass[i].value * (double)v->samples;
-            if (some ? expected >= 1 && expected < 20 : expected < 1) {
-                v->count[i] += 40;
-                moved += 40;
-            }
-        }
-        assert_int_equal(moved, 400);
-        v->count[fullest(v)] -= moved;
+        const uint64_t moved =
+            some ? put(v, 1, 100, 15, SIZE_MAX) : put(v, 0.01, 1, 7, SIZE_MAX);
+        assert_in_range(moved, 50, 1000);
+        take_evenly(v, moved);
         assert_at_most(p_of(&s), 1e-20);
         subject_clear(&s);
     }
+}
+
+/* So many in one that its pool need not show them. */
+static void samples_in_one_nearly_empty_bin_count(void **state)
+{
+    struct subject s = look(1, 100000);
+    (void)state;
+    take_evenly(&s.survey, put(&s.survey, 1, 5, 50, 1));
+    assert_at_most(p_of(&s), 1e-20);
+    subject_clear(&s);
+}
+
+/* None of which is much by itself: 40 are expected at most. */
+static void nearly_empty_bins_that_are_never_drawn_count(void **state)
+{
+    struct subject s = look(1, 100000);
+    struct survey *v = &s.survey;
+    uint64_t never = 0;
+    (void)state;
+    for (size_t i = 0; i < partition_bins(v->partition); i++) {
+        const double expected = v->mass[i].value * (double)v->samples;
+        if (expected >= 5 && expected < 40) {
+            never += v->count[i];
+            v->count[i] = 0;
+        }
+    }
+    assert_in_range(never, 500, 5000);
+    for (size_t i = 0; never > 0; i = (i + 1) % partition_bins(v->partition))
+        if (v->count[i] > 100) {
+            v->count[i]++;
+            never--;
+        }
+    assert_at_most(p_of(&s), 1e-20);
+    subject_clear(&s);
 }
 
 /* Samples refused that the pdf has no room for, taken evenly from all bins: no
@@ -245,6 +302,10 @@ int main(void)
           an_error_of_integration_is_no_mistake },
         { "samples in nearly empty bins count",
           samples_in_nearly_empty_bins_count },
+        { "samples in one nearly empty bin count",
+          samples_in_one_nearly_empty_bin_count },
+        { "nearly empty bins that are never drawn count",
+          nearly_empty_bins_that_are_never_drawn_count },
         { "refused samples are not scaled away",
           refused_samples_are_not_scaled_away },
         { "samples that are refused count", samples_that_are_refused_count },

@@ -3,12 +3,12 @@
  * Chi-square at four resolutions: the bins (some 400 that are full), strips in
  * theta, slices in phi, and groups of both (some 20), as many bins have no
  * power against smooth errors and few none against local ones; and the bin that
- * is furthest off, by its exact binomial tail.  Refused samples and delta
- * directions are cells as well, and nothing is rescaled.  Cells that expect
- * fewer than 100 samples are pooled, those that expect less than 1 apart; a
- * pool that still expects fewer is tested by its exact binomial tail, never
- * dropped. The integration error is read in favour of the model: a residual
- * counts only as far as it exceeds N times the error.
+ * is furthest off, in a pool or not, by its exact binomial tail.  Refused
+ * samples and delta directions are cells as well, and nothing is rescaled.
+ * Cells that expect fewer than 100 samples are pooled, those that expect less
+ * than 1 apart; a pool that still expects fewer is tested by its exact binomial
+ * tail, never dropped. The integration error is read in favour of the model: a
+ * residual counts only as far as it exceeds N times the error.
  *
  * K. Subr and J. Arvo, Statistical Hypothesis Testing for Assessing Monte
  * Carlo Estimators: Applications to Image Synthesis, Pacific Graphics 2007.
@@ -32,8 +32,6 @@ struct outcome {
     struct cell pool[2]; /* of cells that expect less than 1, and fewer than
                             100, where they expect fewer than 100 together */
     long degrees;
-    size_t worst; /* the cell with the largest residual */
-    double worst_sigma;
 };
 
 static void cell_add(struct cell *to, struct cell from)
@@ -42,43 +40,38 @@ static void cell_add(struct cell *to, struct cell from)
     to->count += from.count;
 }
 
-/* (O - E) / sqrt(E), as far as the error does not explain it. */
+/* (O - E) / sqrt(E), as far as the error does not explain it.  A share that
+ * rounding made negative is as good as 0. */
 static double residual(struct cell c, double samples)
 {
-    const double expected = c.share.value * samples;
+    const double expected = fmax(c.share.value, 0) * samples;
     const double off = (double)c.count - expected;
     const double excess = fmax(fabs(off) - c.share.error * samples, 0);
     return copysign(excess, off) / sqrt(expected);
 }
 
-static void outcome_add(struct outcome *o, struct cell c, size_t at,
-                        double samples)
+static void outcome_add(struct outcome *o, struct cell c, double samples)
 {
     const double r = residual(c, samples);
     o->statistic += r * r;
     o->degrees++;
-    if (fabs(r) > fabs(o->worst_sigma)) {
-        o->worst_sigma = r;
-        o->worst = at;
-    }
 }
 
 static struct outcome test(const struct cell *cell, size_t n, uint64_t samples)
 {
-    struct outcome o = { .degrees = -1, .worst = n };
+    struct outcome o = { .degrees = -1 };
     for (size_t i = 0; i < n; i++) {
-        /* A share that rounding made negative is as good as 0. */
         struct cell c = cell[i];
         c.share.value = fmax(c.share.value, 0);
         const double expected = c.share.value * (double)samples;
         if (expected < pool_below)
             cell_add(&o.pool[expected >= pool_apart_below], c);
         else
-            outcome_add(&o, c, i, (double)samples);
+            outcome_add(&o, c, (double)samples);
     }
     for (int k = 0; k < 2; k++)
         if (o.pool[k].share.value * (double)samples >= pool_below) {
-            outcome_add(&o, o.pool[k], n, (double)samples);
+            outcome_add(&o, o.pool[k], (double)samples);
             o.pool[k] = (struct cell){ { 0, 0 }, 0 };
         }
     o.p = pvalue_chi_square(o.statistic, o.degrees);
@@ -133,15 +126,35 @@ static void pool_part(struct verdict *v, const char *name, struct cell c,
                     });
 }
 
-/* The bin whose binomial tail is least likely, paid for by their number. */
-static void bin_part(struct verdict *v, const struct cell *cell, size_t n,
-                     size_t worst, const struct survey *s)
+/* A cell whose count is hardly likely; of no p where none is off by two
+ * standard deviations. */
+struct worst {
+    size_t at;
+    double p, sigma;
+};
+
+/* The one with the least binomial tail, be it in a pool or not: a few samples
+ * too many in a cell that expects next to none are lost in a pool. */
+static struct worst worst_of(const struct cell *cell, size_t n,
+                             uint64_t samples)
 {
-    double p = 1;
-    if (worst < n)
-        p = pvalue_binomial(cell[worst].count, s->samples, cell[worst].share);
+    struct worst w = { n, 1, 0 };
+    for (size_t i = 0; i < n; i++) {
+        const double r = residual(cell[i], (double)samples);
+        if (!(fabs(r) > 2)) /* nor of a mass that is no number */
+            continue;
+        const double p = pvalue_binomial(cell[i].count, samples, cell[i].share);
+        if (p < w.p)
+            w = (struct worst){ i, p, copysign(pvalue_sigma(p), r) };
+    }
+    return w;
+}
+
+/* Paid for by the number of cells. */
+static void worst_part(struct verdict *v, struct worst w, size_t cells)
+{
     verdict_part(v, (struct verdict_part){ .name = "worst bin",
-                                           .p = fmin(p * (double)n, 1),
+                                           .p = fmin(w.p * (double)cells, 1),
                                            .uniform = NAN });
 }
 
@@ -180,6 +193,7 @@ static void run(const struct subject *s, struct verdict *v)
         fine[i] = (struct cell){ survey->mass[i], survey->count[i] };
     const size_t cells = bins + others(survey, fine + bins);
     const struct outcome f = test(fine, cells, survey->samples);
+    const struct worst worst = worst_of(fine, cells, survey->samples);
     const struct outcome theta = grouped(survey, fine, PARTITION_THETA, group);
     const struct outcome phi = grouped(survey, fine, PARTITION_PHI, group);
     const struct outcome c = grouped(survey, fine, PARTITION_COARSE, group);
@@ -193,13 +207,13 @@ static void run(const struct subject *s, struct verdict *v)
               "% of the samples where nearly none should be");
     /* The groups' pools are the fine ones once more. */
     pool_part(v, "sparse", f.pool[1], survey, u.y, NULL);
-    bin_part(v, fine, cells, f.worst, survey);
+    worst_part(v, worst, cells);
     verdict_combine(v);
     if (survey->stray > 0 || isnan(survey->total.value))
         v->p = pvalue_impossible;
-    if (f.worst < bins) {
+    if (worst.at < bins) {
         v->has_wi = true;
-        v->wi = patch_centre(partition_patch(survey->partition, f.worst));
+        v->wi = patch_centre(partition_patch(survey->partition, worst.at));
     }
     verdict_note(v,
                  "fine %.1f on %ld, theta %.1f on %ld, phi %.1f on %ld, coarse "
@@ -207,7 +221,7 @@ static void run(const struct subject *s, struct verdict *v)
                  "worst bin %+.1f sigma%s",
                  f.statistic, f.degrees, theta.statistic, theta.degrees,
                  phi.statistic, phi.degrees, c.statistic, c.degrees,
-                 fmin(v->part[4].p, v->part[5].p), f.worst_sigma,
+                 fmin(v->part[4].p, v->part[5].p), worst.sigma,
                  survey->stray > 0 ? ", samples that are no directions" : "");
 done:
     free(fine);
