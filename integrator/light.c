@@ -81,12 +81,17 @@ static struct light_hit on_shape(const struct shape *a, double u, double v)
                                                         : n };
 }
 
-/* 1 - cos of the half angle of the cone that a sphere fills; 0 from inside. */
+/* 1 - cos of the half angle of the cone that is sampled; 0 where the area is:
+ * from inside, from points that rounding may have put on either side of the
+ * sphere, and of one that emits inward alone, which is seen from inside only.
+ */
 static double cone(const struct shape *a, struct vec3 from)
 {
     const struct vec3 to = vec3_minus(a->center, from);
     const double sine2 = a->radius * a->radius / vec3_dot(to, to);
-    return sine2 < 1 ? sine2 / (1 + sqrt(1 - sine2)) : 0;
+    const double room = 0x1p-30 + 0x1p-40 * a->reach / a->radius;
+    const bool inward = a->flags & SHAPE_FLIPPED && !a->surface.both_sides;
+    return sine2 < 1 - room && !inward ? sine2 / (1 + sqrt(1 - sine2)) : 0;
 }
 
 static struct light_sample in_cone(const struct shape *a, struct vec3 from,
@@ -160,13 +165,10 @@ static struct light_sample of_shape(const struct shape *a, struct vec3 from,
     const bool both = a->surface.both_sides;
     struct light_sample out;
     const double versine = a->kind == SHAPE_SPHERE ? cone(a, from) : 0;
-    if (versine > 0) {
+    if (versine > 0)
         out = in_cone(a, from, versine, u, v);
-        if (a->flags & SHAPE_FLIPPED && !both)
-            out.pdf = 0;
-    } else {
+    else
         out = toward(on_shape(a, u, v), a->area, both, from, false);
-    }
     out.radiance = a->surface.radiance;
     return out;
 }

@@ -218,6 +218,67 @@ static void sphere_light(void **state)
     expect_irradiance(s, e);
 }
 
+/* The walls of a ball that glow inward see one another, wherever it is; after
+ * n bounces L (1 + r + ... + r^n). */
+static void inside_a_sphere_that_glows(void **state)
+{
+    static const struct vec3 center[] = { { 0, 0, 0 }, { 10, 20, -5 } };
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        for (int d = PATH_MIS; d <= PATH_HEMISPHERE; d++) {
+            struct scene *s = empty();
+            struct err err;
+            struct render_settings set = usual;
+            const struct surface wall = matter(s, "diffuse:reflectance=0.5", 1);
+            done(scene_add_sphere(s, center[i], 3, true, &wall, &err), &err);
+            look(s, vec3_add(center[i], (struct vec3){ 1, 0.3, 0 }),
+                 vec3_add(center[i], (struct vec3){ 0, 0, 1 }), 8, 6);
+            done(scene_commit(s, &err), &err);
+            set.path.max_depth = 5;
+            set.path.direct = (enum path_direct)d;
+            const struct brightness m = rendered(s, &set, 0);
+            print_message("%-10s %.6f +- %.6f\n", direct_name[d], m.value,
+                          m.error);
+            /* A ray that starts a hair inside the ball meets it elsewhere by
+             * as much as that is of the radius. */
+            const double reach = 3 + fmax(center[i].x, center[i].y);
+            const double hairs = 4 * 0x1p-19 * reach / 3;
+            if (fabs(m.value - (2 - 0x1p-5)) > hairs)
+                expect(m, 2 - 0x1p-5);
+            scene_free(s);
+        }
+}
+
+/* From within a ball that glows outward nothing glows, even where light goes
+ * through its wall: all ways find the same. */
+static void inside_a_sphere_that_does_not(void **state)
+{
+    struct brightness m[PATH_HEMISPHERE + 1];
+    struct scene *s = empty();
+    struct err err;
+    const struct surface wall =
+        matter(s, "roughdielectric:alpha=0.4,int_ior=1.5", 1);
+    (void)state;
+    done(scene_add_sphere(s, (struct vec3){ 0.2, -0.1, 0.3 }, 1, false, &wall,
+                          &err),
+         &err);
+    look(s, (struct vec3){ 0, 0, -3 }, (struct vec3){ 0, 0, 0 }, 6, 3);
+    done(scene_commit(s, &err), &err);
+    for (int d = PATH_MIS; d <= PATH_HEMISPHERE; d++) {
+        struct render_settings set = usual;
+        set.path.max_depth = 4;
+        set.samples = 2048;
+        set.path.direct = (enum path_direct)d;
+        m[d] = rendered(s, &set, 0);
+        print_message("%-10s %.6f +- %.6f\n", direct_name[d], m[d].value,
+                      m[d].error);
+        expect((struct brightness){ m[d].value,
+                                    hypot(m[d].error, m[PATH_MIS].error) },
+               m[PATH_MIS].value);
+    }
+    scene_free(s);
+}
+
 static void point_light(void **state)
 {
     struct scene *s = empty();
@@ -736,6 +797,10 @@ int main(void)
         { "a rectangle sends what geometry says", rectangle_light },
         { "so does a disk", disk_light },
         { "so does a sphere", sphere_light },
+        { "a sphere that glows inward lights itself",
+          inside_a_sphere_that_glows },
+        { "a sphere that glows outward does not",
+          inside_a_sphere_that_does_not },
         { "so does a point", point_light },
         { "a mirror shows what is behind it", mirror_image },
         { "a closed room is a geometric series", closed_room },
