@@ -133,6 +133,59 @@ static bool ply_check(const char *path, const char *text, size_t size,
     return err_set(err, "%s:%d: expected end_header", path, number);
 }
 
+/* Whether every vertex has its numbers; assimp leaves those out that have not,
+ * and the next ones take their places. */
+static bool obj_check(const char *path, const char *text, struct err *err)
+{
+    int number = 1;
+    for (const char *at = text; at; number++) {
+        const char *const next = strchr(at, '\n');
+        const bool vertex = at[0] == 'v' && (at[1] == ' ' || at[1] == '\t');
+        const char *from = at + 1;
+        for (int i = 0; i < (vertex ? 3 : 0); i++) {
+            char *end;
+            strtod(from, &end);
+            if (end == from || (next && end > next))
+                return err_set(
+                    err, "%s:%d: \"%.*s\": expected three numbers", path,
+                    number, next && next - at < 60 ? (int)(next - at) : 60, at);
+            from = end;
+        }
+        at = next ? next + 1 : NULL;
+    }
+    return true;
+}
+
+/* Whether a number begins with the point that is at i. */
+static bool bare_point(const char *text, size_t i, size_t size)
+{
+    size_t before = i;
+    if (before > 0 && (text[before - 1] == '-' || text[before - 1] == '+'))
+        before--;
+    return text[i] == '.' && i + 1 < size && text[i + 1] >= '0' &&
+           text[i + 1] <= '9' && before > 0 &&
+           (text[before - 1] == ' ' || text[before - 1] == '\t');
+}
+
+/* A copy in which .5 is 0.5, as assimp leaves out a vertex that begins with the
+ * former; NULL when out of memory.  Owned by the caller. */
+static char *with_digits(const char *text, size_t *size)
+{
+    size_t more = 0, at = 0;
+    for (size_t i = 0; i < *size; i++)
+        more += bare_point(text, i, *size);
+    char *out = malloc(*size + more + 1);
+    for (size_t i = 0; out && i < *size; i++) {
+        if (bare_point(text, i, *size))
+            out[at++] = '0';
+        out[at++] = text[i];
+    }
+    if (out)
+        out[at] = '\0';
+    *size = at;
+    return out;
+}
+
 /* -- what assimp made of it -- */
 
 static bool counted(const struct aiScene *a, const char *path, size_t *vertices,
@@ -243,11 +296,19 @@ struct mesh *meshfile_read(const char *path,
         return NULL;
     }
     char *text = xml_read_file(path, &bytes, err);
+    if (text && !ply) {
+        char *const written = with_digits(text, &bytes);
+        free(text);
+        text = written;
+        if (!text)
+            err_set(err, "%s: out of memory", path);
+    }
     if (!text)
         return NULL;
     if (bytes == 0)
         err_set(err, "%s: it is empty", path);
-    else if (!ply || ply_check(path, text, bytes, err)) {
+    else if (ply ? ply_check(path, text, bytes, err)
+                 : obj_check(path, text, err)) {
         const struct aiScene *a = aiImportFileFromMemory(
             text, (unsigned)bytes, ply ? 0 : aiProcess_JoinIdenticalVertices,
             ply ? "ply" : "obj");

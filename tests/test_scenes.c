@@ -1076,6 +1076,12 @@ static void mesh_files_are_what_they_say(void **state)
         assert_null(m->normal);
         mesh_free(m);
     }
+    static const char bare[] = "v .5 .5 0\nv\t-.5 +.5 -.25\r\nv 0 -0.5 0\n"
+                               "f 1 2 3\n";
+    struct mesh *m = mesh_of(written("mesh.obj", bare, sizeof bare - 1), true);
+    assert_vec(mesh_vertex(m, 0, 0), .5, .5, 0);
+    assert_vec(mesh_vertex(m, 0, 1), -.5, .5, -.25);
+    mesh_free(m);
     struct scene *s =
         load(xml_file("<shape type=\"sphere\" id=\"ball\">",
                       "<shape type=\"ply\"><string name=\"filename\" "
@@ -1102,6 +1108,10 @@ static void broken_mesh_files_are_named(void **state)
                  "expected a type");
     mesh_refused("mesh.obj", obj, "f 1 2 3\nf 1 3 4\n", "", "", "");
     mesh_refused("mesh.obj", obj, "v 1 1 0", "v 1 inf 0", "", "");
+    mesh_refused("mesh.obj", obj, "v 1 1 0", "v 1 1", "mesh.obj:3: \"v 1 1\"",
+                 "three numbers");
+    mesh_refused("mesh.obj", obj, "v 1 1 0", "v 1 one 0", "mesh.obj:3",
+                 "three numbers");
     mesh_refused("mesh.stl", obj, "v", "v", ".ply or .obj", "");
     const char *path = xml_file(
         "<shape type=\"sphere\" id=\"ball\">",
