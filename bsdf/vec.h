@@ -58,6 +58,12 @@ static inline struct vec3 vec3_cross(struct vec3 a, struct vec3 b)
                           a.x * b.y - a.y * b.x };
 }
 
+/** The largest of its numbers, by size. */
+static inline double vec3_largest(struct vec3 a)
+{
+    return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
+}
+
 static inline double vec3_length(struct vec3 a)
 {
     return sqrt(vec3_dot(a, a));

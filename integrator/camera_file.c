@@ -20,7 +20,14 @@ static bool numbers(double *x, int *n, const char *path, struct err *err)
     for (*n = 0; *n < NUMBERS && got == 1; *n += got == 1)
         got = fscanf(in, "%lf", &x[*n]);
     const bool junk = got == 0;
+    char more[2];
+    const bool long_one = *n == NUMBERS && fscanf(in, "%1s", more) == 1;
     fclose(in);
+    if (long_one)
+        return err_set(err,
+                       "%s: expected the %d numbers of a camera, and "
+                       "there is more",
+                       path, NUMBERS);
     for (int i = 0; i < *n; i++)
         if (!isfinite(x[i]))
             return err_set(err, "%s: number %d of a camera is %g", path, i + 1,
@@ -79,7 +86,7 @@ bool camera_file_read(struct camera *c, const char *path, struct err *err)
         c->focal_distance = x[FOCUS];
         c->lens_radius = x[FOCUS + 1];
     }
-    return c->lens_radius == 0 || c->focal_distance > 0 ||
-           err_set(err, "%s: focal distance %g: expected above 0", path,
-                   c->focal_distance);
+    return c->lens_radius >= 0 ||
+           err_set(err, "%s: lens radius %g: expected 0 or more", path,
+                   c->lens_radius);
 }

@@ -515,22 +515,29 @@ void compare_print(FILE *out, const struct comparison *c)
                 "%s: %d of %d tests, p = %.3g after Holm, significance %g\n"
                 "largest difference: %+.1f standard errors, channel %c, %d x "
                 "%d pixels at (%d, %d)\n",
-                c->same ? "same" : "different", c->different, c->tests, c->p,
-                c->significance, c->z, "RGB"[c->channel], c -> width,
-                c -> height, c -> x, c -> y);
+                c->same                         ? "same"
+                : c->carriers < carriers_enough ? "unsure"
+                                                : "different",
+                c->different, c->tests, c->p, c->significance, c->z,
+                "RGB"[c->channel], c -> width, c -> height, c -> x, c -> y);
     if (c->carriers < carriers_enough)
         fprintf(out,
                 "note: only %.1f pixels of a block carry its noise, %g are "
-                "wanted: more samples or larger blocks would be surer\n",
+                "wanted: pictures of which one has missed rare bright samples "
+                "differ like this too; more samples or larger blocks would be "
+                "surer\n",
                 c->carriers, carriers_enough);
     fprintf(out, "mean luminance, second over first: %.5g\n", c->ratio);
     if (isfinite(c->variance_ratio)) /* a file may lack luminance's */
         fprintf(out, "variance of a pixel, second over first: %.4g\n",
                 c->variance_ratio);
-    fprintf(out,
-            "found 99 times of 100: a bias of %.2g %% everywhere, of %.2g %% "
-            "in a typical block\n",
-            100 * c->bias, 100 * c->block_bias);
+    if (isfinite(c->bias))
+        fprintf(out,
+                "found 99 times of 100: a bias of %.2g %% everywhere, of "
+                "%.2g %% in a typical block\n",
+                100 * c->bias, 100 * c->block_bias);
+    else
+        fprintf(out, "no bias would have been found 99 times of 100\n");
 }
 
 void compare_print_numbers(FILE *out, const struct comparison *c)
@@ -539,6 +546,7 @@ void compare_print_numbers(FILE *out, const struct comparison *c)
             c->tests, c->different, c->block);
     fprintf(out, "p\t%.9g\nsignificance\t%.9g\nz\t%.9g\n", c->p,
             c->significance, c->z);
+    fprintf(out, "carriers\t%.9g\n", c->carriers);
     fprintf(out,
             "luminance_ratio\t%.9g\nvariance_ratio\t%.9g\nbias\t%.9g\n"
             "block_bias\t%.9g\n",

@@ -19,6 +19,7 @@
 #include "integrator/measure.h"
 #include "integrator/output.h"
 #include "integrator/render.h"
+#include "integrator/trace.h"
 
 enum {
     OPT_ONLY = 1,
@@ -103,7 +104,8 @@ static const struct argp_option options[] = {
       "to go on, in (0, 1]; by the weight of the path, if not given", 0 },
     { "adaptive", 'a', "BATCH TOL", 0,
       "two arguments: after every BATCH samples a pixel is done whose 95 % "
-      "interval is within TOL of its mean; a PNG gets a rate map beside it",
+      "interval is within TOL of its mean, which is biased by that; a PNG gets "
+      "a rate map beside it",
       0 },
     { 0, 0, 0, 0, "Scene:", 3 },
     { "define", 'D', "NAME=VALUE", 0, "for $NAME in the file", 0 },
@@ -203,7 +205,7 @@ static bool adaptive(struct request *r, struct argp_state *state,
         return false;
     const char *second = another(state, "-a BATCH TOL", err);
     return second &&
-           cli_number(&r->render.tolerance, "-a TOL", second, 0, 1e6, err);
+           cli_number(&r->render.tolerance, "-a TOL", second, 1e-9, 1e6, err);
 }
 
 static bool transport(struct request *r, int key, const char *arg,
@@ -271,7 +273,7 @@ static bool other(struct request *r, int key, char *arg,
     switch (key) {
     case 's':
         r->has_samples = true;
-        return cli_count(&r->render.samples, "-s", arg, 1, 1ull << 32, err);
+        return cli_count(&r->render.samples, "-s", arg, 1, UINT32_MAX, err);
     case 'r':
         return resolution(r, state, arg, err);
     case 'p':
@@ -320,6 +322,14 @@ static bool other(struct request *r, int key, char *arg,
 static bool agree(struct request *r, struct err *err)
 {
     r->render.seed = r->shared.seed;
+    if (r->compare && r->measure)
+        return err_set(err, "--measure: not with --compare");
+    if ((r->compare || r->measure) && r->outputs > 0)
+        return err_set(err, "-f %.200s: nothing is rendered with --%s",
+                       r->output[0], r->compare ? "compare" : "measure");
+    if (r->map && !output_is_png(r->map))
+        return err_set(err, "--map %.200s: expected a name that ends in .png",
+                       r->map);
     return r->shared.bands.count == 3 ||
            err_set(err,
                    "--nm: %d wavelengths: expected three, for a picture's "
@@ -434,6 +444,11 @@ static bool settle(struct request *r, struct scene *s, struct err *err)
         p->max_depth = w.max_depth;
     if (!r->has_rr_depth && w.rr_depth >= 0)
         p->rr_depth = w.rr_depth;
+    if (r->only_last && p->only_bounce >= 0)
+        return err_set(err, "-o 0: not with --only-bounce %d", p->only_bounce);
+    if (p->only_bounce > p->max_depth)
+        return err_set(err, "--only-bounce %d: paths end after %d bounces, -m",
+                       p->only_bounce, p->max_depth);
     if (r->only_last)
         p->only_bounce = p->max_depth;
     p->compat = r->load.compat;
@@ -447,7 +462,9 @@ static bool settle(struct request *r, struct scene *s, struct err *err)
     if (isfinite(r->focal_distance))
         c.focal_distance = r->focal_distance;
     if (c.lens_radius > 0 && !(c.focal_distance > 0))
-        return err_set(err, "-b %g: a lens needs a focal distance, -d",
+        return err_set(err,
+                       "lens radius %g: a lens needs a focal distance above "
+                       "0, -d",
                        c.lens_radius);
     scene_set_camera(s, &c);
     return !r->environment || surround(r, s, err);
@@ -471,6 +488,25 @@ static bool save(const struct request *r, const struct render_result *made,
     return ok;
 }
 
+/* Far from the origin the scene's floats are coarse. */
+static void warn_if_far(const struct request *r, const struct scene *s)
+{
+    struct vec3 lo, hi;
+    char text[300];
+    if (!scene_box(s, &lo, &hi))
+        return;
+    const double size = vec3_length(vec3_minus(hi, lo));
+    const double off = trace_hair(fmax(vec3_largest(lo), vec3_largest(hi)));
+    if (!(off > 0.01 * size))
+        return;
+    snprintf(text, sizeof text,
+             "%.100s: it is %.3g across, but so far from the origin that rays "
+             "start %.2g off surfaces, as a float knows no better: expected it "
+             "nearer to the origin",
+             r->arg[0], size, off);
+    warn(text, NULL);
+}
+
 /* Loads, renders, writes; an exit status. */
 static int draw(struct request *r, const char *command, struct err *err)
 {
@@ -480,6 +516,8 @@ static int draw(struct request *r, const char *command, struct err *err)
     bool ok = s && (scene_camera(s) ||
                     err_set(err, "%s: it has no camera", r->arg[0]));
     ok = ok && settle(r, s, err) && scene_commit(s, err);
+    if (ok)
+        warn_if_far(r, s);
     if (ok && r->outputs == 0) {
         output_name(r->arg[0], name, sizeof name);
         r->output[r->outputs++] = name;
@@ -520,6 +558,10 @@ static int draw(struct request *r, const char *command, struct err *err)
 static int compare_pngs(const struct request *r, struct err *err)
 {
     struct png_comparison c;
+    if (r->map || r->numbers) {
+        err_set(err, "--%s: of EXRs alone", r->map ? "map" : "numbers");
+        return EXIT_REQUEST;
+    }
     if (!compare_png(r->arg[0], r->arg[1], &r->comparing, &c, err))
         return EXIT_REQUEST;
     compare_png_print(stdout, &c);

@@ -10,6 +10,8 @@ static int smaller(int a, int b)
 
 static void add(struct measure *m, const struct film_pixel *p)
 {
+    if (p->count == 0)
+        m->without++;
     for (int c = 0; c < 3; c++)
         m->mean[c] += (double)p->mean[c];
     m->luminance += film_luminance(p->mean);
@@ -39,7 +41,10 @@ bool measure_film(const struct film *f, int x, int y, int width, int height,
     for (int j = y; j < y + m->height; j++)
         for (int i = x; i < x + m->width; i++)
             add(m, &f->pixel[(size_t)j * (size_t)f->width + (size_t)i]);
-    const double n = (double)m->width * m->height;
+    /* Where no pixel has samples the file does not tell. */
+    const long all = (long)m->width * m->height;
+    m->without = m->without == all ? 0 : m->without;
+    const double n = (double)(all - m->without);
     for (int c = 0; c < 3; c++)
         m->mean[c] /= n;
     m->luminance /= n;
@@ -71,4 +76,5 @@ void measure_print(FILE *out, const struct measure *m)
     line(out, "noise", m->noise);
     line(out, "samples", m->samples);
     fprintf(out, "samples_least\t%u\nsamples_most\t%u\n", m->least, m->most);
+    fprintf(out, "pixels_without_samples\t%ld\n", m->without);
 }

@@ -18,6 +18,8 @@ struct measure {
     double noise;            /* its root over the mean luminance [1] */
     double samples;          /* a pixel, on average */
     uint32_t least, most;    /* samples of a pixel */
+    long without; /* pixels that have none, as of a picture that was stopped;
+                     they count for nothing */
 };
 
 /** Measures the part of so many pixels at (x, y), cut off at the picture's

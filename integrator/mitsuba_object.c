@@ -53,9 +53,11 @@ bool object_close(struct object *o)
         if (o->part[i].used)
             continue;
         char what[256];
-        snprintf(what, sizeof what, "<%.60s> %s%.60s%s it is unknown",
+        snprintf(what, sizeof what, "<%.60s> %s%.60s%s %s",
                  (const char *)o->node->name, o->type[0] ? "of type \"" : "",
-                 o->type, o->type[0] ? "\":" : ":");
+                 o->type, o->type[0] ? "\":" : ":",
+                 o->part[i].name[0] ? "it is unknown"
+                                    : "it is unknown, or one too many");
         o->failed = !loader_unknown(o->l, o->part[i].node, o->err, what);
     }
     return !o->failed;

@@ -79,6 +79,9 @@ static bool attributes(struct table *t, xmlNode *node)
             continue;
         if (!expand(t, node, text, value))
             return false;
+        if (!value[0])
+            return xml_fail(node, t->err, "%.60s=\"%.60s\": it is empty",
+                            (const char *)a->name, text);
         xmlNodeSetContent(a->children, NULL);
         xmlNodeAddContent(a->children, (const xmlChar *)value);
         if (!a->children->content)

@@ -41,9 +41,14 @@ void output_name(const char *scene, char *name, size_t size)
 {
     const char *slash = strrchr(scene, '/');
     const char *base = slash ? slash + 1 : scene;
-    const size_t stem = strcspn(base, ".");
-    snprintf(name, size, "%.*s.png", stem > 200 ? 200 : (int)stem,
-             stem > 0 ? base : "scene");
+    static const char *const ending[] = { ".dae.xz", ".dae", ".xml" };
+    size_t stem = strlen(base);
+    for (int i = 0; i < 3; i++)
+        if (ends(base, ending[i])) {
+            stem -= strlen(ending[i]);
+            break;
+        }
+    snprintf(name, size, "%.*s.png", stem > 200 ? 200 : (int)stem, base);
 }
 
 /* NAME.png to NAME_rate.png; NULL when out of memory. */
@@ -127,6 +132,9 @@ void output_summary(FILE *out, const struct render_result *made,
     struct measure m;
     if (!measure_film(made->film, 0, 0, 0, 0, &m, NULL))
         return; /* all of a picture is always in it */
+    if (m.without > 0)
+        fprintf(out, "%ld pixels have no sample yet, and count for nothing\n",
+                m.without);
     fprintf(out, "mean luminance %.6g", m.luminance);
     if (isfinite(m.error))
         fprintf(out, " +- %.2g", m.error);

@@ -1,6 +1,7 @@
 /* render.c - passes over tiles, and sums over samples */
 #include "integrator/render.h"
 
+#include <float.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -61,11 +62,12 @@ static double variance(uint64_t n, double s1, double s2)
     return n < 2 ? NAN : fmax(0, s2 - s1 * s1 / count) / (count - 1) / count;
 }
 
+/* Not as long as no sample has seen light: that some would is not known. */
 static bool certain(const struct sums *a, double tolerance)
 {
     const double mu = a->y1 / (double)a->n;
     const double i = 1.96 * sqrt(variance(a->n, a->y1, a->y2));
-    return a->n > 1 && i <= tolerance * mu;
+    return a->n > 1 && mu > 0 && i <= tolerance * mu;
 }
 
 static struct film_pixel pixel(const struct sums *a)
@@ -146,8 +148,10 @@ static struct worker *worker_new(const struct job *job)
 static void count(struct tally *tally, const struct piece *at, struct path p)
 {
     tally->paths++;
-    if (!isfinite(p.radiance.band[0] + p.radiance.band[1] +
-                  p.radiance.band[2])) {
+    /* Nor what no float of the film can hold. */
+    if (!(fabs(p.radiance.band[0]) + fabs(p.radiance.band[1]) +
+              fabs(p.radiance.band[2]) <=
+          (double)FLT_MAX)) {
         count_bad(&tally->bad, &tally->first_bad, 1,
                   (struct render_place){ at->x, at->y, at->sums->n });
         p.radiance = p.albedo = (struct spectrum){ { 0 } };

@@ -1,15 +1,16 @@
 /* render.h - a picture of a scene
  *
  * The picture is made in passes of some samples for every pixel, so that
- * whenever it is stopped there is a whole one.  Each pixel depends on the seed
+ * whenever it is stopped, but in the first, there is a whole one; then pixels
+ * without a sample are black, and count 0.  Each pixel depends on the seed
  * and its place alone: neither on the number of threads nor on what part of the
  * picture is rendered.
  *
  * Adaptive: after every batch a pixel is done whose mean luminance mu is known
  * to I = 1.96 sigma / sqrt(n) <= tolerance mu, sigma^2 = (s2 - s1^2 / n) /
- * (n - 1).  That stops when luck looks like certainty, so that the means of
- * adaptive pictures are biased, and their variances too small; comparisons
- * should use others.
+ * (n - 1), and that has seen light.  That stops when luck looks like certainty,
+ * so that the means of adaptive pictures are biased, and their variances too
+ * small; comparisons should use others.
  */
 #ifndef INTEGRATOR_RENDER_H
 #define INTEGRATOR_RENDER_H
@@ -21,7 +22,7 @@
 
 struct render_settings {
     struct path_settings path;
-    uint64_t samples; /* a pixel, at least 1, at most 2^32 */
+    uint64_t samples; /* a pixel, at least 1, below 2^32 */
     enum sampler_kind sampler;
     uint64_t seed;
     uint64_t batch;          /* of adaptive sampling */

@@ -21,6 +21,11 @@
 
 static const double hair = 0x1p-19;
 
+double trace_hair(double reach)
+{
+    return hair * reach;
+}
+
 struct context {
     struct RTCIntersectContext embree; /* comes first */
     const struct rays *rays;           /* by their numbers */
@@ -181,11 +186,6 @@ static void attach(struct scene *s, unsigned number)
     rtcReleaseGeometry(g);
 }
 
-static double largest(struct vec3 v)
-{
-    return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
-}
-
 bool scene_commit(struct scene *s, struct err *err)
 {
     if (s->shapes == 0)
@@ -195,7 +195,7 @@ bool scene_commit(struct scene *s, struct err *err)
     const struct vec3 eye =
         affine_point(&s->camera.to_world, (struct vec3){ 0, 0, 0 });
     const double reach =
-        fmax(fmax(largest(s->lo), largest(s->hi)), largest(eye));
+        fmax(fmax(vec3_largest(s->lo), vec3_largest(s->hi)), vec3_largest(eye));
     if (!(reach < 1e15))
         return err_set(err,
                        "the scene reaches to %g: expected coordinates below "
@@ -457,7 +457,7 @@ void trace_places(const struct rays *rays, const struct met *met,
     size_t mores = 0;
     for (size_t i = 0; i < n; i++) {
         const struct shape *a = h->shape[i] = met->shape[ray[i]];
-        h->hair[i] = hair * a->reach;
+        h->hair[i] = trace_hair(a->reach);
         h->emits[i] = false;
         corners_at(met, ray[i], i, &c);
         more[mores] = (uint16_t)i;

@@ -36,6 +36,10 @@ INLINE struct frame hits_frame(const struct hits *h, size_t i)
                            vecs_at(&h->n, i) };
 }
 
+/** How far off a surface rays start, of a shape whose largest coordinate is
+ * known. */
+double trace_hair(double reach);
+
 /** Whether the queue's rays meet something, and what; together: they mostly
  * take the same way. */
 void trace_rays(const struct scene *s, const struct rays *rays,

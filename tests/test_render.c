@@ -234,6 +234,17 @@ static void adaptive_counts(void **state)
     assert_has(output, ", 16 to 256");
 }
 
+/* The same of what makes no picture. */
+static void not_told(const char *arguments, const char *a, const char *b)
+{
+    char line[1024];
+    snprintf(line, sizeof line, "cd $T && bsdf-render %s 2>&1 </dev/null",
+             arguments);
+    assert_int_equal(sh(line), 2);
+    assert_has(output, a);
+    assert_has(output, b);
+}
+
 static void wrong_requests(void **state)
 {
     (void)state;
@@ -241,19 +252,22 @@ static void wrong_requests(void **state)
     refused("a.xml b.xml", "b.xml", "one argument too many");
     refused("missing.xml", "missing.xml", "No such file");
     refused("a.xml -f b.jpg", "b.jpg", ".png or .exr");
-    refused("a.xml -s 0", "-s 0", "[1, 4294967296]");
+    refused("a.xml -s 0", "-s 0", "[1, 4294967295]");
     refused("a.xml -m -1", "-m -1", "whole number");
     refused("a.xml -m 1.5", "-m 1.5", "whole number");
     refused("a.xml -r 0 5", "-r W 0", "whole number");
     refused("a.xml -r 7", "-r W H", "missing");
     refused("a.xml -a 8", "-a BATCH TOL", "missing");
-    refused("a.xml -a 8 -1", "-a TOL -1", "[0, ");
+    refused("a.xml -a 8 -1", "-a TOL -1", "[1e-09, ");
+    refused("a.xml -a 8 0", "-a TOL 0", "[1e-09, ");
     refused("a.xml -o 2", "-o 2", "[0, 1]");
     refused("a.xml -p 50 0 20 5", "20 x 5 at 50, 0", "60 x 40");
-    refused("--measure few.exr b.exr", "--measure", "one picture");
-    refused("--measure a.xml", "a.xml", "");
-    refused("--measure few.exr -p 500 0 1 1", "-p 500 0", "60 x 40");
-    refused("a.xml -b 0.1", "-b 0.1", "focal distance");
+
+    refused("a.xml -b 0.1", "lens radius 0.1", "focal distance");
+    refused("a.xml -m 2 --only-bounce 3", "--only-bounce 3", "after 2 bounces");
+    refused("a.xml -o 0 --only-bounce 1", "-o 0", "--only-bounce 1");
+    refused("a.xml --nm 500,600", "--nm", "expected three");
+    refused("a.xml -D radius=", "a.xml", "it is empty");
     refused("a.xml -c a.xml", "a.xml", "number 1");
     refused("a.xml -e a.xml", "a.xml", "EXR");
     refused("a.xml --direct mix", "mix", "mis");
@@ -262,8 +276,16 @@ static void wrong_requests(void **state)
     refused("a.xml --compat corse", "corse", "course");
     refused("a.xml -D radius", "radius", "NAME=VALUE");
     refused("a.xml -D radius=wide", "a.xml", "wide");
-    refused("--compare a.xml", "--compare", "two pictures");
-    refused("--compare a.xml a.xml", "a.xml", "EXR");
+    refused("--compare a.xml", "nothing is rendered", "--compare");
+    refused("--measure a.xml", "nothing is rendered", "--measure");
+    not_told("--compare a.xml", "--compare", "two pictures");
+    not_told("--compare a.xml a.xml", "a.xml", "EXR");
+    not_told("--compare few.exr few.exr --map z.exr", "--map z.exr", ".png");
+    not_told("--compare few.exr few.exr --measure", "--measure", "--compare");
+    not_told("--compare a.png b.png --numbers", "--numbers", "EXRs alone");
+    not_told("--measure few.exr b.exr", "--measure", "one picture");
+    not_told("--measure a.xml", "a.xml", "");
+    not_told("--measure few.exr -p 500 0 1 1", "-p 500 0", "60 x 40");
     refused("a.xml -f /dev/full/x.png", "/dev/full/x.png", "Not a directory");
 }
 
