@@ -22,14 +22,16 @@ static const double hits_least = 1000;
 
 /* An error of what is compared with is read in favour of the model.  p is
  * uniform where that is at most this part of a standard error, which moves p by
- * 2 * 0.4 times as much, and 0.4 is the largest density of a normal number. */
-static const double nothing_beside = 0.005;
+ * 2 * 0.4 times as much, and 0.4 is the largest density of a normal number; and
+ * where weights differ by more than the rounding of one and the same. */
+static const double nothing_beside = 0.005, rounding = 1e-12;
 
 static void part(struct verdict *v, const char *name, struct mean m,
                  struct estimate truth, const char *before)
 {
     const double spread = sqrt(m.variance / (double)m.n);
-    const bool known = truth.error <= nothing_beside * spread;
+    const bool known = truth.error <= nothing_beside * spread &&
+                       sqrt(m.variance) > rounding * fabs(truth.value);
     verdict_part(v, (struct verdict_part){
                         .name = name,
                         .p = pvalue_mean(m, truth),
