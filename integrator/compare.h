@@ -18,7 +18,8 @@
  *     variance, (sum v)^2 / sum(v^2), less one.
  *   - By the same count over the whole picture, with variances relative to the
  *     squared mean around, a block has 16 such pixels on average: unless its
- *     side is asked for, it is doubled from 20 until it has.
+ *     side is asked for, it is doubled from 20 until it has.  Where it has
+ *     not even so, pictures are not called different but unsure.
  *
  * Measured over 2000 pairs of 40 x 40 pixels each, at a significance of .05
  * (tests/test_compare.c has the same with fewer): equal pictures were called
