@@ -7,7 +7,8 @@
  * Embree takes rays in packets, and what a ray hits may depend, in the last
  * bits, on its companions.  So a wave consists of pieces: samples of one pixel,
  * whose number a pass of render.c decides, and a packet is of one piece's rays,
- * in the order of samples.  What else is in the wave changes nothing.
+ * in an order that is the piece's own.  What else is in the wave changes
+ * nothing.
  */
 #ifndef INTEGRATOR_WAVE_H
 #define INTEGRATOR_WAVE_H
