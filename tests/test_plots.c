@@ -186,6 +186,53 @@ static void a_script_in_the_way_leaves_nothing(void **state)
     quiet("cd $T/way; rm -r x.gp; [ -z \"$(ls)\" ]; rmdir $T/way");
 }
 
+static void what_is_read_is_never_replaced(void **state)
+{
+    (void)state;
+    static const char *const wrong[][3] = {
+        { "series mine.tsv -o mine.png", "mine.tsv", "the figure's data" },
+        { "series ./mine.tsv -o $T/read/mine.tex", "./mine.tsv", "data" },
+        { "series link.tsv -o mine.svg", "link.tsv", "data" },
+        { "series mine.tsv -o hard.svg", "mine.tsv", "data" },
+        { "kill-matrix mine.tsv -o mine.pdf", "mine.tsv", "data" },
+        { "p-values mine.tsv -o mine.png", "mine.tsv", "data" },
+        { "lobe diffuse --wo 1,0 --style my.gp -o my.png", "my.gp",
+          "the figure's script" },
+        { "lobe roughconductor:material=./my.gp --wo 1,0 -o my.png", "./my.gp",
+          "script" },
+        { "ior Ca,my.gp -o my.svg", "my.gp", "script" },
+        { "report run.html -o run.html", "run.html", "the page" },
+        { "writeup run.html -o ./run.html", "run.html", "the page" },
+    };
+    char line[1024];
+    quiet(
+        "mkdir $T/read; cd $T/read; printf 'c\\tx\\ty\\te\\na\\t1\\t2\\t1\\n' "
+        ">mine.tsv; echo 'unset grid' >my.gp; ln -s mine.tsv link.tsv; ln "
+        "mine.tsv hard.tsv; cp mine.tsv run.html; ls -l >$T/before; cat * "
+        ">>$T/before");
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        snprintf(line, sizeof line, "cd $T/read; bsdf-plot %s 2>&1",
+                 wrong[i][0]);
+        assert_int_equal(sh(line), 2);
+        assert_has(output, wrong[i][1]);
+        assert_has(output, wrong[i][2]);
+        assert_has(output, "-o with another name");
+        quiet("cd $T/read; { ls -l; cat *; } | cmp - $T/before");
+    }
+    quiet("cd $T/read; cp mine.tsv series.tsv; bsdf-plot series series.tsv "
+          ">$T/made; cmp mine.tsv series.tsv; [ -s series-plot.svg ]; "
+          "bsdf-plot series mine.tsv >$T/made; [ -s series.svg ]; rm -r "
+          "$T/read");
+}
+
+static void names_are_printed_as_they_were_given(void **state)
+{
+    (void)state;
+    quiet("mkdir $T/given; cd $T/given; for n in 1 2; do bsdf-plot lobe "
+          "diffuse --wo 10,0 -o ./x.tex >$T/made; printf './x.%s\\n' tsv gp "
+          "caption pdf tex | cmp - $T/made; done; rm -r $T/given");
+}
+
 /* -- the numbers ----------------------------------------------------------- */
 
 struct view {
@@ -563,6 +610,9 @@ int main(void)
         { "wrong requests are refused", wrong_requests_are_refused },
         { "a script in the way leaves nothing",
           a_script_in_the_way_leaves_nothing },
+        { "what is read is never replaced", what_is_read_is_never_replaced },
+        { "names are printed as they were given",
+          names_are_printed_as_they_were_given },
         { "a lobe follows the model however narrow",
           a_lobe_follows_the_model_however_narrow },
         { "a surface follows the model however narrow",
