@@ -472,6 +472,20 @@ static void a_mirror_is_an_arrow_with_its_weight(void **state)
     quiet("grep -q 'probability 1, weight 0.25, 0.5, 1' $T/m.svg");
 }
 
+static void ratios_of_like_models_have_short_numbers(void **state)
+{
+    (void)state;
+    quiet("cd $T; for s in diffuse:reflectance=0.5 "
+          "diffuse:reflectance=0.50001; do bsdf-plot compare diffuse $s --wo "
+          "45,0 --samples 1000 -o like.svg >made; grep -q '>1.005<' like.svg; "
+          "! grep -q '>1.00000' like.svg; ! grep -q '>0.99999' like.svg; done");
+    quiet("cd $T; bsdf-plot compare roughconductor diffuse:reflectance=0 --wo "
+          "45,0 --samples 1000 -o black.svg >made; grep -q 'first: 0, as the "
+          "second is' black.svg; bsdf-plot compare diffuse:reflectance=0 "
+          "roughconductor --wo 45,0 --samples 1000 -o black.svg >made; grep -q "
+          "'none, the first is 0' black.svg");
+}
+
 /* Every row in range and one to each side of it. */
 static void rows_are_those_of_the_page(void **state)
 {
@@ -621,6 +635,8 @@ int main(void)
         { "bands are named as they are", bands_are_named_as_they_are },
         { "a colour that is not quite met is warned of",
           a_colour_that_is_not_quite_met_is_warned_of },
+        { "ratios of like models have short numbers",
+          ratios_of_like_models_have_short_numbers },
         { "rows are those of the page", rows_are_those_of_the_page },
         { "a formula is drawn as what it gives",
           a_formula_is_drawn_as_what_it_gives },
