@@ -319,7 +319,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 const struct plot plot_compare = {
     .name = "compare",
     .about = "two models: cuts, ratio, difference, albedos",
-    .heeds = HEEDS_WO | HEEDS_PHI | HEEDS_LOG,
+    .heeds = HEEDS_WO | HEEDS_PHI | HEEDS_LOG | HEEDS_SAMPLES,
     .models = 2,
     .models_least = 2,
     .run = run,

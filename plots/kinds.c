@@ -36,7 +36,7 @@ void plot_caption(struct figure *fig, const struct plot *plot,
                        r->bands.kind == BANDS_NM ? "Wavelengths" : "Bands",
                        bands);
     }
-    if (plot->subject == PLOT_MODEL)
+    if (plot->heeds & HEEDS_SAMPLES)
         figure_caption(fig, "Seed %llu, %llu samples. ",
                        (unsigned long long)r->seed,
                        (unsigned long long)r->samples);

@@ -166,6 +166,10 @@ static void wrong_requests_are_refused(void **state)
             "[1000");
     refused("bsdf-plot lobe3d diffuse --wo 120,0", "120", "nothing to draw");
     refused("bsdf-plot lobe diffuse --wo 45,0 --rgb best", "\"best\"", "fit");
+    refused("bsdf-plot slice diffuse:reflectance=0",
+            "diffuse:reflectance=0 reflects nothing; ", "nothing to draw");
+    refused("bsdf-plot slice mirror", "nothing but single directions",
+            "nothing to draw");
     refused("bsdf-plot ior", "ior", "NAME");
     refused("bsdf-plot ior Xx", "Xx", "Ca");
     refused("bsdf-plot ior Ca,,Cu", "name", "missing");
@@ -486,6 +490,31 @@ static void ratios_of_like_models_have_short_numbers(void **state)
           "'none, the first is 0' black.svg");
 }
 
+static void captions_count_the_samples_of_kinds_that_draw_some(void **state)
+{
+    (void)state;
+    quiet("cd $T; at='--wo 20,10 --samples 1000 -o cap.svg'; for k in "
+          "\"histogram diffuse $at\" \"convergence diffuse $at\" "
+          "\"compare diffuse diffuse $at\" 'albedo diffuse --samples 1000 -o "
+          "cap.svg'; do bsdf-plot $k >made; grep -q 'Seed 1, 1000 samples' "
+          "cap.caption || echo $k >&2; done; c=conductor:material=Cu; for k in "
+          "\"lobe diffuse $at\" \"lobe3d diffuse $at\" 'slice diffuse -o "
+          "cap.svg' \"ndf rough$c -o cap.svg\" \"fresnel $c -o cap.svg\" "
+          "'ior Ca -o cap.svg' 'colour Ca -o cap.svg'; do bsdf-plot $k >made "
+          "2>said; ! grep -E 'Seed|samples' cap.caption || echo $k >&2; done");
+}
+
+static void mistakes_are_found_with_or_without_a_scale(void **state)
+{
+    (void)state;
+    quiet("cd $T; printf 'name\\tsize\\tpdf\\tsmallest "
+          "scale\\tstatus\\na\\t1\\tfails\\t"
+          "0.01\\tcaught\\nb\\t1\\tfails\\t-\\tcaught\\nc\\t0\\tpasses\\t-"
+          "\\tpassed"
+          "\\n' >found.tsv; bsdf-plot kill-matrix found.tsv -o k.svg >made; "
+          "grep -q '3 mistakes, 2 of which some check finds' k.svg");
+}
+
 /* Every row in range and one to each side of it. */
 static void rows_are_those_of_the_page(void **state)
 {
@@ -637,6 +666,10 @@ int main(void)
           a_colour_that_is_not_quite_met_is_warned_of },
         { "ratios of like models have short numbers",
           ratios_of_like_models_have_short_numbers },
+        { "captions count the samples of kinds that draw some",
+          captions_count_the_samples_of_kinds_that_draw_some },
+        { "mistakes are found with or without a scale",
+          mistakes_are_found_with_or_without_a_scale },
         { "rows are those of the page", rows_are_those_of_the_page },
         { "a formula is drawn as what it gives",
           a_formula_is_drawn_as_what_it_gives },
