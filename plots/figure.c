@@ -243,6 +243,13 @@ void figure_caption(struct figure *fig, const char *format, ...)
     free(text);
 }
 
+void figure_caption_spec(struct figure *fig, const char *spec)
+{
+    char *tex = fig->form->tex ? text_tex_spec(spec) : NULL;
+    fputs(tex ? tex : spec, fig->caption);
+    free(tex);
+}
+
 /* How many bytes of a text make its next line: up to a comma, or cut. */
 static size_t line_length(const char *text)
 {

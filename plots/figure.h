@@ -97,6 +97,9 @@ void figure_panel(struct figure *fig, double x0, double x1, double y0,
 __attribute__((format(printf, 2, 3))) void
 figure_caption(struct figure *fig, const char *format, ...);
 
+/** Adds a spec or a path, which TeX may go on with in the next line. */
+void figure_caption_spec(struct figure *fig, const char *spec);
+
 /** Closes all but the picture, runs the script.  When gnuplot fails the others
  * are made all the same. */
 bool figure_draw(struct figure *fig, struct figure_made *made, struct err *err);

@@ -270,7 +270,7 @@ static void a_caption_says_how_it_was_made(void **state)
           "'5000 samples' 'θ = 20°, φ = 10°' 'histogram 0.'; do grep -q -F "
           "\"$w\" cap.caption; done; bsdf-plot lobe "
           "roughconductor:alpha_u=0.3,alpha_v=0.2 --wo 20,10 -o cap.tex >made; "
-          "grep -q -F 'alpha\\_u' cap.caption");
+          "grep -q -F 'alpha\\_\\allowbreak{}u' cap.caption");
 }
 
 static void a_window_is_opened_or_one_line_says_why_not(void **state)
