@@ -252,10 +252,11 @@ static void nothing_is_left_where_gnuplot_fails(void **state)
 static void a_style_has_the_last_word(void **state)
 {
     (void)state;
-    quiet("cd $T; echo 'set linetype 9 lc rgb \"#123456\" dt 3 lw 7' >s.gp; "
-          "bsdf-plot lobe diffuse --wo 20,0 --style s.gp -o s.svg >made; rm "
-          "s.gp; bsdf-plot lobe diffuse --wo 20,0 -o plain.svg >made; grep -q "
-          "'18,  *52,  *86' s.svg; ! grep -q '18,  *52,  *86' plain.svg");
+    quiet(
+        "cd $T; echo 'set linetype 9 lc rgb \"#123456\" dt 3 lw 7' >mine.gp; "
+        "bsdf-plot lobe diffuse --wo 20,0 --style mine.gp -o s.svg >made; rm "
+        "mine.gp; bsdf-plot lobe diffuse --wo 20,0 -o plain.svg >made; grep -q "
+        "'18,  *52,  *86' s.svg; ! grep -q '18,  *52,  *86' plain.svg");
     refused("bsdf-plot lobe diffuse --wo 20,0 --style none.gp", "none.gp",
             "No such file");
 }
