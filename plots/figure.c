@@ -270,9 +270,51 @@ static size_t line_length(const char *text)
 struct title {
     char *plain;
     size_t from[LINES_MAX], length[LINES_MAX];
+    bool cut[LINES_MAX]; /* there is more of this part */
     int lines;
-    bool cut;
 };
+
+/* How many lines a part takes; a part ends with its line of the text. */
+static int lines_of(const char *at)
+{
+    int lines = 0;
+    for (; *at && *at != '\n'; lines++)
+        at += line_length(at);
+    return lines > 0 ? lines : 1;
+}
+
+/* How many parts follow, this one included, and how many lines these take. */
+static int parts_of(const char *at, int *lines)
+{
+    int parts = 0;
+    *lines = 0;
+    for (; *at; parts++) {
+        *lines += lines_of(at);
+        at += strcspn(at, "\n");
+        at += *at == '\n';
+    }
+    return parts;
+}
+
+/* Parts that are too long for the title together share its lines. */
+static void title_lines(struct title *t)
+{
+    for (const char *at = t->plain; *at && t->lines < LINES_MAX;) {
+        int all;
+        const int parts = parts_of(at, &all), left = LINES_MAX - t->lines;
+        const int share = all <= left ? left : left > parts ? left / parts : 1;
+        for (int i = 0; i < share && *at && *at != '\n'; i++) {
+            const size_t n = line_length(at);
+            t->from[t->lines] = (size_t)(at - t->plain);
+            t->length[t->lines++] = n;
+            at += n;
+        }
+        if (*at && *at != '\n')
+            t->cut[t->lines - 1] = true;
+        at += strcspn(at, "\n");
+        at += *at == '\n';
+    }
+}
 
 static struct title title_wrap(const char *text)
 {
@@ -291,13 +333,7 @@ static struct title title_wrap(const char *text)
     if (!out || fclose(out) != 0)
         return t;
     t.plain = plain;
-    for (const char *at = plain; *at && t.lines < LINES_MAX;) {
-        const size_t n = line_length(at);
-        t.from[t.lines] = (size_t)(at - plain);
-        t.length[t.lines++] = n;
-        at += n + (at[n] == '\n');
-        t.cut = *at;
-    }
+    title_lines(&t);
     return t;
 }
 
@@ -356,7 +392,7 @@ void figure_page(struct figure *fig, double width, double body,
     for (int i = 0; i < t.lines; i++) {
         char *line = NULL;
         if (asprintf(&line, "%.*s%s", (int)t.length[i], t.plain + t.from[i],
-                     t.cut && i + 1 == t.lines ? " …" : "") >= 0)
+                     t.cut[i] ? " …" : "") >= 0)
             figure_label(fig, width / 2, fig->height - LINE_HEIGHT * (i + 1),
                          "center", line);
         free(line);

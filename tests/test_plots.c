@@ -515,6 +515,22 @@ static void mistakes_are_found_with_or_without_a_scale(void **state)
           "grep -q '3 mistakes, 2 of which some check finds' k.svg");
 }
 
+/* In the title as in the key. */
+static void long_specs_are_told_apart(void **state)
+{
+    (void)state;
+    quiet(
+        "cd $T; s=roughconductor:eta=0.123456789/0.223456789/0.323456789,k="
+        "2.123456789/2.323456789/2.523456789,distribution=ggx,alpha_v="
+        "0.1234567,specular_reflectance=0.123456789,alpha_u=; bsdf-plot "
+        "compare ${s}0.11 ${s}0.22 --wo 45,0 --samples 1000 -o far.svg >made; "
+        "for n in 11 22; do grep -q \">…alpha_u=0.$n<\" far.svg; grep -q "
+        "\">.*,alpha_u=0.$n<\" far.svg; done; bsdf-plot lobe ${s}0.11 "
+        "${s}0.22 diffuse diffuse --wo 45,0 -o far.svg >made; for t in "
+        "…alpha_u=0.11 …alpha_u=0.22 '3: diffuse' '4: diffuse'; do grep -q "
+        "\">$t<\" far.svg; done");
+}
+
 /* Every row in range and one to each side of it. */
 static void rows_are_those_of_the_page(void **state)
 {
@@ -670,6 +686,7 @@ int main(void)
           captions_count_the_samples_of_kinds_that_draw_some },
         { "mistakes are found with or without a scale",
           mistakes_are_found_with_or_without_a_scale },
+        { "long specs are told apart", long_specs_are_told_apart },
         { "rows are those of the page", rows_are_those_of_the_page },
         { "a formula is drawn as what it gives",
           a_formula_is_drawn_as_what_it_gives },
