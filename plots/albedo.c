@@ -360,6 +360,6 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 const struct plot plot_albedo = {
     .name = "albedo",
     .about = "the albedo against theta and alpha, and what is lost",
-    .heeds = HEEDS_PHI,
+    .heeds = HEEDS_PHI | HEEDS_SAMPLES,
     .run = run,
 };

@@ -19,6 +19,8 @@ enum { ANGLES = 46, EXACT = 5 };
 /* Where the first is below this share of its largest value there is no ratio.
  */
 static const double ratio_floor = 1e-6;
+/* The axis of ratios is no narrower than 1 and this to either side. */
+static const double ratio_room = 0.01;
 static const double last_deg = 89.5;
 
 struct comparison {
@@ -27,7 +29,9 @@ struct comparison {
     double phi_deg; /* of wo, for the albedos */
     uint64_t seed, samples;
     double albedo[2][ANGLES], exact[2][EXACT];
-    double ratio_lo, ratio_hi, difference;
+    double ratio_lo, ratio_hi;   /* of those above 0 */
+    bool ratio_none, ratio_zero; /* nowhere a ratio; somewhere 0 */
+    double difference;
 };
 
 static double angle_of(int i)
@@ -81,6 +85,22 @@ static bool albedos(struct comparison *c, struct err *err)
     return ok;
 }
 
+/* NaN where there is none. */
+static double ratio_of(double x, double y, double floor)
+{
+    return x > floor && (y > floor || y == 0) ? y / x : NAN;
+}
+
+static void ratio_add(struct comparison *c, double ratio)
+{
+    c->ratio_none &= isnan(ratio);
+    c->ratio_zero |= ratio == 0;
+    if (ratio > 0) {
+        c->ratio_lo = fmin(c->ratio_lo, ratio);
+        c->ratio_hi = fmax(c->ratio_hi, ratio);
+    }
+}
+
 /* Angles of both traces, in order. */
 static void differences_write(FILE *out, struct comparison *c)
 {
@@ -89,6 +109,7 @@ static void differences_write(FILE *out, struct comparison *c)
     size_t i = 0, k = 0;
     double last = NAN;
     c->ratio_lo = INFINITY;
+    c->ratio_none = true;
     fputs("\n\n# theta_i [deg]\tf |cos theta_i| of the first [1/sr]\tof the "
           "second [1/sr]\tsecond / first [1]\tsecond - first [1/sr]\n",
           out);
@@ -102,11 +123,8 @@ static void differences_write(FILE *out, struct comparison *c)
             continue;
         last = deg;
         const double x = mean_at(a, deg), y = mean_at(b, deg);
-        const double ratio = x > floor && y > floor ? y / x : NAN;
-        if (ratio > 0) {
-            c->ratio_lo = fmin(c->ratio_lo, ratio);
-            c->ratio_hi = fmax(c->ratio_hi, ratio);
-        }
+        const double ratio = ratio_of(x, y, floor);
+        ratio_add(c, ratio);
         if (isfinite(y - x))
             c->difference = fmax(c->difference, fabs(y - x));
         table_row(out, (double[]){ deg, x, y, ratio, y - x }, 5);
@@ -157,12 +175,19 @@ static void panel(struct figure *fig, int column, double bottom,
 static struct chart_axis ratio_axis(const struct comparison *c)
 {
     static const char what[] = "ratio";
-    if (!(c->ratio_hi > 0))
-        return chart_axis_exact(0, 2, 0.5, what, "1");
+    const double lo = c->ratio_zero ? 0 : fmin(c->ratio_lo, 1 - ratio_room);
     if (c->ratio_hi > 10 * c->ratio_lo)
         return chart_axis_log(c->ratio_lo, c->ratio_hi, what, "1");
-    return chart_axis(fmin(c->ratio_lo, 1), fmax(c->ratio_hi, 1 + 1e-9), 5,
-                      what, "1");
+    return chart_axis(lo, fmax(c->ratio_hi, 1 + ratio_room), 5, what, "1");
+}
+
+static const char *ratio_title(const struct comparison *c)
+{
+    return c->ratio_none      ? "f, second / first: none, the first is 0"
+           : c->ratio_hi == 0 ? "f, second / first: 0, as the second is"
+           : c->ratio_zero && c->ratio_hi > 10 * c->ratio_lo
+               ? "f, second / first; blank where either is 0"
+               : "f, second / first";
 }
 
 static struct chart_axis about_zero(double most, const char *what,
@@ -180,7 +205,7 @@ static void differences(struct figure *fig, const struct comparison *c,
     struct chart_curve curve = {
         .block = block, .x = "$1", .y = "$4", .line = LINE_ONLY
     };
-    panel(fig, 0, bottom, "f, second / first", x, ratio_axis(c), &curve, 1, 1);
+    panel(fig, 0, bottom, ratio_title(c), x, ratio_axis(c), &curve, 1, 1);
     strcpy(curve.y, "$5");
     panel(fig, 1, bottom, "f |cos θᵢ|, second − first", x,
           about_zero(c->difference, "difference", "1/sr"), &curve, 1, 0);
@@ -294,7 +319,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 const struct plot plot_compare = {
     .name = "compare",
     .about = "two models: cuts, ratio, difference, albedos",
-    .heeds = HEEDS_WO | HEEDS_PHI | HEEDS_LOG,
+    .heeds = HEEDS_WO | HEEDS_PHI | HEEDS_LOG | HEEDS_SAMPLES,
     .models = 2,
     .models_least = 2,
     .run = run,

@@ -286,6 +286,6 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 const struct plot plot_convergence = {
     .name = "convergence",
     .about = "the error of the albedo against the number of samples",
-    .heeds = HEEDS_WO,
+    .heeds = HEEDS_WO | HEEDS_SAMPLES,
     .run = run,
 };

@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "bsdf/utf8.h"
@@ -27,6 +28,52 @@ static void forget(struct figure *fig)
     free(fig->stem);
     free(fig->style);
     *fig = (struct figure){ 0 };
+}
+
+/* -- names ----------------------------------------------------------------- */
+
+/* What lies beside a picture; the last of a .tex only. */
+enum { TABLE, SCRIPT, CAPTION, GRAPHIC, BESIDE };
+static const struct {
+    const char *extension, *what;
+} beside[BESIDE] = { [TABLE] = { ".tsv", "the figure's data" },
+                     [SCRIPT] = { ".gp", "the figure's script" },
+                     [CAPTION] = { ".caption", "the figure's caption" },
+                     [GRAPHIC] = { ".pdf", "the figure's graphic" } };
+
+/* A picture's path with another extension; owned by the caller. */
+static char *path_beside(const char *picture, const struct form *form,
+                         const char *extension)
+{
+    const size_t n = strlen(picture) - strlen(form->extension);
+    char *path;
+    return asprintf(&path, "%.*s%s", (int)n, picture, extension) < 0 ? NULL
+                                                                     : path;
+}
+
+static bool same_file(const char *a, const char *b)
+{
+    struct stat x, y;
+    return stat(a, &x) == 0 && stat(b, &y) == 0 && S_ISREG(x.st_mode) &&
+           x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
+bool figure_spares(const char *output, bool page, const char *input,
+                   struct err *err)
+{
+    static const char format[] =
+        "%.200s: it is read, and %s would replace it; -o with another name";
+    const struct form *form = page ? NULL : form_of(output, NULL);
+    bool spared = true;
+    if (same_file(output, input))
+        return err_set(err, format, input, page ? "the page" : "the picture");
+    for (int i = 0; form && spared && i < BESIDE - !form->tex; i++) {
+        char *path = path_beside(output, form, beside[i].extension);
+        if (path && same_file(path, input))
+            spared = err_set(err, format, input, beside[i].what);
+        free(path);
+    }
+    return spared;
 }
 
 /* What TeX reads as a name whatever it has been told. */
@@ -63,16 +110,14 @@ static bool names(struct figure *fig, const char *path, struct err *err)
     return (fig->folder && fig->stem) || err_set(err, "out of memory");
 }
 
-static bool open_beside(struct figure *fig, struct outfile *out,
-                        const char *path, const char *extension,
+static bool open_beside(struct figure *fig, struct outfile *out, int which,
                         struct err *err)
 {
-    const size_t n = strlen(path) - strlen(fig->form->extension);
-    char *beside;
-    if (asprintf(&beside, "%.*s%s", (int)n, path, extension) < 0)
+    char *path = path_beside(fig->path, fig->form, beside[which].extension);
+    if (!path)
         return err_set(err, "out of memory");
-    const bool ok = outfile_open(out, beside, err);
-    free(beside);
+    const bool ok = outfile_open(out, path, err);
+    free(path);
     return ok;
 }
 
@@ -104,14 +149,13 @@ static bool style_read(struct figure *fig, struct err *err)
 bool figure_open(struct figure *fig, const char *path,
                  const struct figure_look *look, struct err *err)
 {
-    *fig = (struct figure){ .look = *look };
+    *fig = (struct figure){ .path = path, .look = *look };
     if (names(fig, path, err) && style_read(fig, err) &&
         outfile_open(&fig->picture, path, err) &&
-        (!fig->form->tex ||
-         open_beside(fig, &fig->graphic, path, ".pdf", err)) &&
-        open_beside(fig, &fig->tables, path, ".tsv", err) &&
-        open_beside(fig, &fig->scripts, path, ".gp", err) &&
-        open_beside(fig, &fig->captions, path, ".caption", err)) {
+        (!fig->form->tex || open_beside(fig, &fig->graphic, GRAPHIC, err)) &&
+        open_beside(fig, &fig->tables, TABLE, err) &&
+        open_beside(fig, &fig->scripts, SCRIPT, err) &&
+        open_beside(fig, &fig->captions, CAPTION, err)) {
         fig->table = fig->tables.stream;
         fig->script = fig->scripts.stream;
         fig->caption = fig->captions.stream;
@@ -199,6 +243,13 @@ void figure_caption(struct figure *fig, const char *format, ...)
     free(text);
 }
 
+void figure_caption_spec(struct figure *fig, const char *spec)
+{
+    char *tex = fig->form->tex ? text_tex_spec(spec) : NULL;
+    fputs(tex ? tex : spec, fig->caption);
+    free(tex);
+}
+
 /* How many bytes of a text make its next line: up to a comma, or cut. */
 static size_t line_length(const char *text)
 {
@@ -219,9 +270,51 @@ static size_t line_length(const char *text)
 struct title {
     char *plain;
     size_t from[LINES_MAX], length[LINES_MAX];
+    bool cut[LINES_MAX]; /* there is more of this part */
     int lines;
-    bool cut;
 };
+
+/* How many lines a part takes; a part ends with its line of the text. */
+static int lines_of(const char *at)
+{
+    int lines = 0;
+    for (; *at && *at != '\n'; lines++)
+        at += line_length(at);
+    return lines > 0 ? lines : 1;
+}
+
+/* How many parts follow, this one included, and how many lines these take. */
+static int parts_of(const char *at, int *lines)
+{
+    int parts = 0;
+    *lines = 0;
+    for (; *at; parts++) {
+        *lines += lines_of(at);
+        at += strcspn(at, "\n");
+        at += *at == '\n';
+    }
+    return parts;
+}
+
+/* Parts that are too long for the title together share its lines. */
+static void title_lines(struct title *t)
+{
+    for (const char *at = t->plain; *at && t->lines < LINES_MAX;) {
+        int all;
+        const int parts = parts_of(at, &all), left = LINES_MAX - t->lines;
+        const int share = all <= left ? left : left > parts ? left / parts : 1;
+        for (int i = 0; i < share && *at && *at != '\n'; i++) {
+            const size_t n = line_length(at);
+            t->from[t->lines] = (size_t)(at - t->plain);
+            t->length[t->lines++] = n;
+            at += n;
+        }
+        if (*at && *at != '\n')
+            t->cut[t->lines - 1] = true;
+        at += strcspn(at, "\n");
+        at += *at == '\n';
+    }
+}
 
 static struct title title_wrap(const char *text)
 {
@@ -240,13 +333,7 @@ static struct title title_wrap(const char *text)
     if (!out || fclose(out) != 0)
         return t;
     t.plain = plain;
-    for (const char *at = plain; *at && t.lines < LINES_MAX;) {
-        const size_t n = line_length(at);
-        t.from[t.lines] = (size_t)(at - plain);
-        t.length[t.lines++] = n;
-        at += n + (at[n] == '\n');
-        t.cut = *at;
-    }
+    title_lines(&t);
     return t;
 }
 
@@ -305,7 +392,7 @@ void figure_page(struct figure *fig, double width, double body,
     for (int i = 0; i < t.lines; i++) {
         char *line = NULL;
         if (asprintf(&line, "%.*s%s", (int)t.length[i], t.plain + t.from[i],
-                     t.cut && i + 1 == t.lines ? " …" : "") >= 0)
+                     t.cut[i] ? " …" : "") >= 0)
             figure_label(fig, width / 2, fig->height - LINE_HEIGHT * (i + 1),
                          "center", line);
         free(line);
@@ -361,7 +448,7 @@ static bool picture_draw(struct figure *fig, const char *script, char *said,
 bool figure_made_keep(struct figure_made *made, struct outfile *out,
                       const char *name, struct err *err)
 {
-    char *path = strdup(name);
+    char *path = name ? strdup(name) : NULL;
     if (!path) {
         outfile_abandon(out);
         return err_set(err, "out of memory");
@@ -374,9 +461,13 @@ bool figure_made_keep(struct figure_made *made, struct outfile *out,
     return true;
 }
 
-static bool keep(struct outfile *out, struct figure_made *made, struct err *err)
+static bool keep(struct figure *fig, struct outfile *out, int which,
+                 struct figure_made *made, struct err *err)
 {
-    return figure_made_keep(made, out, out->path, err);
+    char *path = path_beside(fig->path, fig->form, beside[which].extension);
+    const bool ok = figure_made_keep(made, out, path, err);
+    free(path);
+    return ok;
 }
 
 bool figure_draw(struct figure *fig, struct figure_made *made, struct err *err)
@@ -388,17 +479,18 @@ bool figure_draw(struct figure *fig, struct figure_made *made, struct err *err)
     if (asprintf(&script, "%s.gp", fig->stem) < 0)
         script = NULL;
     const bool written = (script || err_set(err, "out of memory")) &&
-                         keep(&fig->tables, made, err) &&
-                         keep(&fig->scripts, made, err) &&
-                         keep(&fig->captions, made, err);
+                         keep(fig, &fig->tables, TABLE, made, err) &&
+                         keep(fig, &fig->scripts, SCRIPT, made, err) &&
+                         keep(fig, &fig->captions, CAPTION, made, err);
     if (!written) { /* a table alone is no use */
         for (int i = 0; i < made->paths; i++)
             unlink(made->path[i]);
         figure_made_clear(made);
     }
-    bool ok = written && picture_draw(fig, script, made->said, err) &&
-              (!fig->form->tex || keep(&fig->graphic, made, err)) &&
-              keep(&fig->picture, made, err);
+    bool ok =
+        written && picture_draw(fig, script, made->said, err) &&
+        (!fig->form->tex || keep(fig, &fig->graphic, GRAPHIC, made, err)) &&
+        figure_made_keep(made, &fig->picture, fig->path, err);
     if (ok && fig->look.window)
         ok = gnuplot_window(fig->folder, script, fig->width, fig->height, err);
     free(script);

@@ -36,13 +36,15 @@ struct figure {
     double width, height;           /* of the page */
     const struct form *form;
 
+    const char *path; /* of the picture; borrowed */
     struct figure_look look;
     char *style; /* the commands of the style file */
     struct outfile picture, graphic, tables, scripts, captions;
     char *folder, *stem; /* names in the folder begin with ./ */
 };
 
-/** What there is after a run: full paths, and what gnuplot said. */
+/** What there is after a run: paths as they were given, and what gnuplot said.
+ */
 struct figure_made {
     char *path[5]; /* owned */
     int paths;
@@ -52,12 +54,18 @@ struct figure_made {
 void figure_made_clear(struct figure_made *made);
 
 /** Closes a file and remembers it by a name; nothing is left where either
- * fails. */
+ * fails, or there is no name for want of memory. */
 bool figure_made_keep(struct figure_made *made, struct outfile *out,
                       const char *name, struct err *err);
 
+/** Whether an output, a page alone or a picture with what lies beside it, would
+ * leave a file that is read as it is; false and the reason if not. */
+bool figure_spares(const char *output, bool page, const char *input,
+                   struct err *err);
+
 /** Opens all of them for a picture to be at path, which ends in .svg, .pdf,
- * .png or .tex.  Either figure_draw or figure_abandon must follow. */
+ * .png or .tex, and which must outlive the figure.  Either figure_draw or
+ * figure_abandon must follow. */
 bool figure_open(struct figure *fig, const char *path,
                  const struct figure_look *look, struct err *err);
 
@@ -88,6 +96,9 @@ void figure_panel(struct figure *fig, double x0, double x1, double y0,
 /** Adds to the caption. */
 __attribute__((format(printf, 2, 3))) void
 figure_caption(struct figure *fig, const char *format, ...);
+
+/** Adds a spec or a path, which TeX may go on with in the next line. */
+void figure_caption_spec(struct figure *fig, const char *spec);
 
 /** Closes all but the picture, runs the script.  When gnuplot fails the others
  * are made all the same. */

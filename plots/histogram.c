@@ -301,6 +301,6 @@ static bool run(const struct plot_request *r, struct figure_made *made,
 const struct plot plot_histogram = {
     .name = "histogram",
     .about = "samples against the integrated pdf, and the residual",
-    .heeds = HEEDS_WO | HEEDS_ZOOM,
+    .heeds = HEEDS_WO | HEEDS_ZOOM | HEEDS_SAMPLES,
     .run = run,
 };

@@ -44,6 +44,16 @@ static bool cell_read(const struct matrix *m, size_t row, int check,
                    m->rows.name[m->first + check], text);
 }
 
+/* By a check that fails, or by the scale down to which one does. */
+static bool found(const struct matrix *m, size_t row)
+{
+    enum cell cell;
+    bool any = !isnan(m->smallest[row]);
+    for (int k = 0; k < m->checks && !any; k++)
+        any = cell_read(m, row, k, &cell, NULL) && cell == FAILS;
+    return any;
+}
+
 static bool matrix_read(struct matrix *m, const char *path, struct err *err)
 {
     if (!rows_read(&m->rows, path, err))
@@ -168,7 +178,7 @@ static void script_write(struct figure *fig, const struct matrix *m)
     char below[200];
     size_t caught = 0;
     for (size_t i = 0; i < m->rows.n; i++)
-        caught += isnan(m->smallest[i]) ? 0 : 1;
+        caught += found(m, i);
     snprintf(below, sizeof below,
              "%zu mistakes, %zu of which some check finds; a blank: the check "
              "does not apply",

@@ -17,11 +17,12 @@ void plot_caption(struct figure *fig, const struct plot *plot,
 {
     char bands[96];
     figure_caption(fig, "%s ", shows);
-    for (int i = 0; i < r->bsdfs; i++)
-        figure_caption(fig, "%s%s",
-                       i ? "; " : "Model: ", bsdf_spec(r->bsdf[i]));
+    for (int i = 0; i < r->bsdfs; i++) {
+        figure_caption(fig, i ? "; " : "Model: ");
+        figure_caption_spec(fig, bsdf_spec(r->bsdf[i]));
+    }
     if (subject)
-        figure_caption(fig, "%s", subject);
+        figure_caption_spec(fig, subject);
     figure_caption(fig, ". ");
     for (int i = 0; (plot->heeds & HEEDS_WO) && i < r->wos; i++) {
         const struct angles a = dir_to_degrees(r->wo[i]);
@@ -36,7 +37,7 @@ void plot_caption(struct figure *fig, const struct plot *plot,
                        r->bands.kind == BANDS_NM ? "Wavelengths" : "Bands",
                        bands);
     }
-    if (plot->subject == PLOT_MODEL)
+    if (plot->heeds & HEEDS_SAMPLES)
         figure_caption(fig, "Seed %llu, %llu samples. ",
                        (unsigned long long)r->seed,
                        (unsigned long long)r->samples);

@@ -43,6 +43,7 @@ enum plot_heeds {
     HEEDS_PHI = 2,
     HEEDS_LOG = 4,
     HEEDS_ZOOM = 8,
+    HEEDS_SAMPLES = 16, /* and the seed */
 };
 
 struct plot {

@@ -59,7 +59,8 @@ static const struct argp_option options[] = {
       "a histogram over half vectors, or over the projected disk", 0 },
     { "output", 'o', "FILE", 0,
       "ends in .svg, .pdf, .png or .tex, for a report in .html, for a writeup "
-      "in .html or .tex; KIND.svg if not given",
+      "in .html or .tex; KIND.svg if not given, or KIND-plot.svg where that "
+      "would replace what is read",
       0 },
     { "width", OPT_WIDTH, "MM", 0,
       "of the picture, 40 to 2000; 211.67, which is 800 pixels of an SVG", 0 },
@@ -319,20 +320,46 @@ static bool fits(const struct plot *plot, const struct request *r,
            err_set(err, "%s: expected --wo THETA,PHI in degrees", plot->name);
 }
 
-static bool draw(struct request *r, struct figure_made *made, struct err *err)
+/* Whether an output would leave all that is read as it is: the file, the style,
+ * and those that pages and specs name, which stand between such signs. */
+static bool spares(const struct plot *plot, const struct request *r,
+                   const char *output, struct err *err)
+{
+    const char *style = r->plot.look.style;
+    bool ok = !style || figure_spares(output, plot->extension, style, err);
+    for (int i = 1; ok && i < r->args; i++) {
+        char *words = strdup(r->arg[i]), *rest = words;
+        ok = figure_spares(output, plot->extension, r->arg[i], err);
+        for (char *word; ok && (word = strsep(&rest, ":,='()"));)
+            ok = figure_spares(output, plot->extension, word, err);
+        free(words);
+    }
+    return ok;
+}
+
+/* KIND.svg, or KIND-plot.svg where that would replace what is read. */
+static const char *default_output(const struct plot *plot,
+                                  const struct request *r)
 {
     static char name[64]; /* the request keeps it */
+    const char *extension = plot->extension ? plot->extension : ".svg";
+    snprintf(name, sizeof name, "%s%s", plot->name, extension);
+    if (!spares(plot, r, name, NULL))
+        snprintf(name, sizeof name, "%s-plot%s", plot->name, extension);
+    return name;
+}
+
+static bool draw(struct request *r, struct figure_made *made, struct err *err)
+{
     const struct plot *plot = r->args > 0 ? kind(r->arg[0], err) : NULL;
     if (r->args == 0)
         return err_set(err, "expected a kind of plot and a SPEC, as in lobe "
                             "roughconductor:material=Ca --wo 45,0");
     if (!plot || !fits(plot, r, err))
         return false;
-    snprintf(name, sizeof name, "%s%s", plot->name,
-             plot->extension ? plot->extension : ".svg");
     if (!r->plot.output)
-        r->plot.output = name;
-    return draw_of(plot, r, made, err);
+        r->plot.output = default_output(plot, r);
+    return spares(plot, r, r->plot.output, err) && draw_of(plot, r, made, err);
 }
 
 int main(int argc, char **argv)

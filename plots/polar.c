@@ -26,6 +26,57 @@ static void curve_columns(struct polar *p, int cosine, int i)
     c->line = t->same ? LINE_ONLY : colours_line(bsdf_bands(t->bsdf), i);
 }
 
+enum { SPEC_MAX = 64 }; /* bytes of a spec in the key */
+
+/* Backward to where a character begins. */
+static size_t whole(const char *text, size_t n)
+{
+    while (n > 0 && ((unsigned char)text[n] & 0xc0) == 0x80)
+        n--;
+    return n;
+}
+
+/* How many bytes all specs begin with that are too long for the key, up to
+ * where a setting begins; 0 where these are the same. */
+static size_t common(const struct polar *p)
+{
+    const char *first = NULL;
+    bool differ = false;
+    size_t n = 0;
+    for (int i = 0; i < p->traces; i++) {
+        const char *spec = bsdf_spec(p->trace[i].bsdf);
+        if (strlen(spec) <= SPEC_MAX)
+            continue;
+        if (!first) {
+            first = spec;
+            n = strlen(spec);
+        }
+        differ |= strcmp(spec, first) != 0;
+        size_t k = 0;
+        while (k < n && spec[k] == first[k])
+            k++;
+        n = k;
+    }
+    while (n > 0 && !strchr(":,(", first[n - 1]))
+        n--;
+    return differ ? n : 0;
+}
+
+/* A spec; of one that is too long for the key what not all of these begin with,
+ * cut in the middle. */
+static int spec_short(const struct polar *p, const char *spec, char *text,
+                      size_t size)
+{
+    const size_t length = strlen(spec);
+    const size_t from = length > SPEC_MAX ? common(p) : 0;
+    const char *sign = from ? "…" : "", *rest = spec + from;
+    if (length - from <= SPEC_MAX)
+        return snprintf(text, size, "%s%s", sign, rest);
+    return snprintf(text, size, "%s%.*s…%s", sign,
+                    (int)whole(rest, SPEC_MAX / 2), rest,
+                    rest + whole(rest, length - from - SPEC_MAX / 2));
+}
+
 /* What the one of several is, by what differs. */
 static void name(const struct polar *p, int i, char *text, size_t size)
 {
@@ -41,11 +92,30 @@ static void name(const struct polar *p, int i, char *text, size_t size)
     size_t n = 0;
     text[0] = '\0';
     if (specs || !directions)
-        n = (size_t)snprintf(text, size, "%.64s%s", bsdf_spec(t->bsdf),
-                             strlen(bsdf_spec(t->bsdf)) > 64 ? "…" : "");
+        n = (size_t)spec_short(p, bsdf_spec(t->bsdf), text, size);
     if (directions && n < size)
         snprintf(text + n, size - n, "%sωₒ at %.6g°, %.6g°", n ? ", " : "",
                  a.theta_deg, a.phi_deg);
+}
+
+/* Those that read the same are told apart by where they come. */
+static void number_alike(struct polar *p)
+{
+    bool alike[POLAR_CURVES_MAX] = { false };
+    for (int i = 0; i < p->curves; i++)
+        for (int k = 0; k < p->curves; k++)
+            alike[i] |=
+                k != i && strcmp(p->curve[0][i].text, p->curve[0][k].text) == 0;
+    for (int i = 0; i < p->curves; i++) {
+        char *text = p->curve[0][i].text;
+        const size_t size = sizeof p->curve[0][i].text;
+        char was[sizeof p->curve[0][i].text];
+        if (!alike[i])
+            continue;
+        strcpy(was, text);
+        snprintf(text, size, "%d: %.*s", 1 + i,
+                 (int)whole(was, strnlen(was, size - 4)), was);
+    }
 }
 
 static double mean_most(const struct trace *t, bool cosine)
@@ -85,6 +155,8 @@ struct polar polar_of(const struct trace *trace, int traces, bool log)
         else
             bands_print_one(bsdf_bands(trace->bsdf), i, text, (int)size);
     }
+    if (traces > 1)
+        number_alike(&p);
     return p;
 }
 

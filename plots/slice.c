@@ -206,6 +206,16 @@ static void script_write(struct figure *fig, const struct slice *s)
     edge(fig, 1, bottom, y, curve, n);
 }
 
+static bool nothing(const struct slice *s, struct err *err)
+{
+    const bool single = bsdf_claims(s->bsdf).lobes & BSDF_DELTA;
+    return s->most == 0 &&
+           !err_set(err,
+                    "slice: %.200s reflects nothing%s; there is nothing "
+                    "to draw",
+                    bsdf_spec(s->bsdf), single ? " but single directions" : "");
+}
+
 static bool run(const struct plot_request *r, struct figure_made *made,
                 struct err *err)
 {
@@ -216,12 +226,7 @@ static bool run(const struct plot_request *r, struct figure_made *made,
     s->bsdf = r->bsdf[0];
     s->phi_deg = isnan(r->phi_deg) ? 90 : r->phi_deg;
     fill(s);
-    bool ok = s->most > 0 ||
-              err_set(err,
-                      "slice: %s reflects nothing but single directions, so "
-                      "there is nothing to draw",
-                      bsdf_type(s->bsdf)->name);
-    ok = ok && figure_open(&fig, r->output, &r->look, err);
+    bool ok = !nothing(s, err) && figure_open(&fig, r->output, &r->look, err);
     if (ok) {
         table_write(fig.table, s);
         script_write(&fig, s);

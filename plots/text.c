@@ -1,6 +1,7 @@
 /* text.c - from UTF-8 to LaTeX */
 #include "plots/text.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -88,16 +89,10 @@ static size_t decode(const unsigned char *p, unsigned *code)
     return n;
 }
 
-char *text_tex(const char *text)
+static void tex_write(FILE *out, const char *text, size_t size)
 {
     enum { PAIRS = sizeof pairs / sizeof *pairs };
-    char *tex = NULL;
-    size_t size;
-    FILE *out = open_memstream(&tex, &size);
-    if (!out)
-        return NULL;
-    fputs("\\relax{}", out); /* nor with a brace */
-    while (*text) {
+    for (const char *end = text + size; text < end;) {
         size_t i = 0, n;
         unsigned code;
         while (i < PAIRS &&
@@ -115,8 +110,41 @@ char *text_tex(const char *text)
             fprintf(out, "U+%04X", code);
         text += n;
     }
+}
+
+size_t text_piece(const char *spec)
+{
+    const size_t n = strcspn(spec, ":,/=_");
+    return n + (spec[n] != '\0');
+}
+
+static char *tex_of(const char *text, bool spec)
+{
+    char *tex = NULL;
+    size_t size;
+    FILE *out = open_memstream(&tex, &size);
+    if (!out)
+        return NULL;
+    fputs("\\relax{}", out); /* nor with a brace */
+    while (*text) {
+        const size_t n = spec ? text_piece(text) : strlen(text);
+        tex_write(out, text, n);
+        text += n;
+        if (*text)
+            fputs("\\allowbreak{}", out);
+    }
     if (fclose(out) == 0)
         return tex;
     free(tex);
     return NULL;
+}
+
+char *text_tex(const char *text)
+{
+    return tex_of(text, false);
+}
+
+char *text_tex_spec(const char *spec)
+{
+    return tex_of(spec, true);
 }

@@ -220,12 +220,14 @@ static void run_of(struct page *p, const char *text, size_t n)
 /* Long words of it may go on in the next line behind punctuation. */
 static void code(struct page *p, const char *text)
 {
-    while (*text) {
-        const size_t n = strcspn(text, ":,/=_"), all = n + (text[n] != '\0');
-        run_of(p, text, all);
-        text += all;
-        if (*text)
-            fputs(p->tex ? "\\allowbreak{}" : "<wbr/>", p->out);
+    char *tex = p->tex ? text_tex_spec(text) : NULL;
+    fputs(tex ? tex : "", p->out);
+    free(tex);
+    while (!p->tex && *text) {
+        const size_t n = text_piece(text);
+        run_of(p, text, n);
+        text += n;
+        fputs(*text ? "<wbr/>" : "", p->out);
     }
 }
 
@@ -245,7 +247,7 @@ static bool between(struct page *p, char sign, const char *inside,
         char value[WORD_MAX];
         ok = value_of(p, inside, value, sizeof value, err);
         if (ok)
-            plain(p, value);
+            code(p, value);
     } else if (sign == '*') {
         fputs(p->tex ? "\\emph{" : "<em>", out);
         ok = inline_text(p, inside, err);
@@ -498,7 +500,9 @@ static bool table_row_out(struct page *p, char *line, bool head, int *columns,
     const int n = cells_of(line, cell);
     bool ok = true;
     if (head && p->tex) {
-        fputs("\n\\begin{center}\\small\\begin{tabular}{", p->out);
+        fputs("\n\\begin{center}\\small\\begin{lrbox}{\\rows}"
+              "\\begin{tabular}{",
+              p->out);
         for (int i = 0; i < n; i++)
             fputc(i ? 'r' : 'l', p->out);
         fputs("}\\hline\n", p->out);
@@ -530,7 +534,8 @@ static bool table_row_out(struct page *p, char *line, bool head, int *columns,
 
 static void table_end(struct page *p)
 {
-    fputs(p->tex ? "\\hline\\end{tabular}\\end{center}\n\n"
+    fputs(p->tex ? "\\hline\\end{tabular}\\end{lrbox}\\fitting"
+                   "\\end{center}\n\n"
                  : "</tbody></table></div>\n",
           p->out);
 }
@@ -540,7 +545,9 @@ static void aligned(struct page *p, const char *line)
 {
     while (*line) {
         const size_t n = strcspn(line, " "), spaces = strspn(line + n, " ");
-        run_of(p, line, n);
+        char *word = strndup(line, n);
+        code(p, word ? word : "");
+        free(word);
         for (size_t i = 0; i < spaces; i++)
             fputs(spaces == 1 ? " " : "~", p->out);
         line += n + spaces;
@@ -616,6 +623,10 @@ static const char preamble[] =
     "\\graphicspath{{tex/}{./}}\n"
     "\\setlength{\\parindent}{0pt}\\setlength{\\parskip}{.6em}\n"
     "\\emergencystretch=4em\n"
+    "\\newsavebox{\\rows}\n"
+    "\\newcommand{\\fitting}{\\ifdim\\wd\\rows>\\linewidth\n"
+    "  \\resizebox{\\linewidth}{!}{\\usebox{\\rows}}"
+    "\\else\\usebox{\\rows}\\fi}\n"
     "\\renewcommand{\\labelitemi}{$\\bullet$}\n";
 
 static bool title(struct page *p, const char *text, struct err *err)

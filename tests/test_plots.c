@@ -166,6 +166,10 @@ static void wrong_requests_are_refused(void **state)
             "[1000");
     refused("bsdf-plot lobe3d diffuse --wo 120,0", "120", "nothing to draw");
     refused("bsdf-plot lobe diffuse --wo 45,0 --rgb best", "\"best\"", "fit");
+    refused("bsdf-plot slice diffuse:reflectance=0",
+            "diffuse:reflectance=0 reflects nothing; ", "nothing to draw");
+    refused("bsdf-plot slice mirror", "nothing but single directions",
+            "nothing to draw");
     refused("bsdf-plot ior", "ior", "NAME");
     refused("bsdf-plot ior Xx", "Xx", "Ca");
     refused("bsdf-plot ior Ca,,Cu", "name", "missing");
@@ -184,6 +188,53 @@ static void a_script_in_the_way_leaves_nothing(void **state)
                      2);
     assert_has(output, "x.gp");
     quiet("cd $T/way; rm -r x.gp; [ -z \"$(ls)\" ]; rmdir $T/way");
+}
+
+static void what_is_read_is_never_replaced(void **state)
+{
+    (void)state;
+    static const char *const wrong[][3] = {
+        { "series mine.tsv -o mine.png", "mine.tsv", "the figure's data" },
+        { "series ./mine.tsv -o $T/read/mine.tex", "./mine.tsv", "data" },
+        { "series link.tsv -o mine.svg", "link.tsv", "data" },
+        { "series mine.tsv -o hard.svg", "mine.tsv", "data" },
+        { "kill-matrix mine.tsv -o mine.pdf", "mine.tsv", "data" },
+        { "p-values mine.tsv -o mine.png", "mine.tsv", "data" },
+        { "lobe diffuse --wo 1,0 --style my.gp -o my.png", "my.gp",
+          "the figure's script" },
+        { "lobe roughconductor:material=./my.gp --wo 1,0 -o my.png", "./my.gp",
+          "script" },
+        { "ior Ca,my.gp -o my.svg", "my.gp", "script" },
+        { "report run.html -o run.html", "run.html", "the page" },
+        { "writeup run.html -o ./run.html", "run.html", "the page" },
+    };
+    char line[1024];
+    quiet(
+        "mkdir $T/read; cd $T/read; printf 'c\\tx\\ty\\te\\na\\t1\\t2\\t1\\n' "
+        ">mine.tsv; echo 'unset grid' >my.gp; ln -s mine.tsv link.tsv; ln "
+        "mine.tsv hard.tsv; cp mine.tsv run.html; ls -l >$T/before; cat * "
+        ">>$T/before");
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        snprintf(line, sizeof line, "cd $T/read; bsdf-plot %s 2>&1",
+                 wrong[i][0]);
+        assert_int_equal(sh(line), 2);
+        assert_has(output, wrong[i][1]);
+        assert_has(output, wrong[i][2]);
+        assert_has(output, "-o with another name");
+        quiet("cd $T/read; { ls -l; cat *; } | cmp - $T/before");
+    }
+    quiet("cd $T/read; cp mine.tsv series.tsv; bsdf-plot series series.tsv "
+          ">$T/made; cmp mine.tsv series.tsv; [ -s series-plot.svg ]; "
+          "bsdf-plot series mine.tsv >$T/made; [ -s series.svg ]; rm -r "
+          "$T/read");
+}
+
+static void names_are_printed_as_they_were_given(void **state)
+{
+    (void)state;
+    quiet("mkdir $T/given; cd $T/given; for n in 1 2; do bsdf-plot lobe "
+          "diffuse --wo 10,0 -o ./x.tex >$T/made; printf './x.%s\\n' tsv gp "
+          "caption pdf tex | cmp - $T/made; done; rm -r $T/given");
 }
 
 /* -- the numbers ----------------------------------------------------------- */
@@ -425,6 +476,61 @@ static void a_mirror_is_an_arrow_with_its_weight(void **state)
     quiet("grep -q 'probability 1, weight 0.25, 0.5, 1' $T/m.svg");
 }
 
+static void ratios_of_like_models_have_short_numbers(void **state)
+{
+    (void)state;
+    quiet("cd $T; for s in diffuse:reflectance=0.5 "
+          "diffuse:reflectance=0.50001; do bsdf-plot compare diffuse $s --wo "
+          "45,0 --samples 1000 -o like.svg >made; grep -q '>1.005<' like.svg; "
+          "! grep -q '>1.00000' like.svg; ! grep -q '>0.99999' like.svg; done");
+    quiet("cd $T; bsdf-plot compare roughconductor diffuse:reflectance=0 --wo "
+          "45,0 --samples 1000 -o black.svg >made; grep -q 'first: 0, as the "
+          "second is' black.svg; bsdf-plot compare diffuse:reflectance=0 "
+          "roughconductor --wo 45,0 --samples 1000 -o black.svg >made; grep -q "
+          "'none, the first is 0' black.svg");
+}
+
+static void captions_count_the_samples_of_kinds_that_draw_some(void **state)
+{
+    (void)state;
+    quiet("cd $T; at='--wo 20,10 --samples 1000 -o cap.svg'; for k in "
+          "\"histogram diffuse $at\" \"convergence diffuse $at\" "
+          "\"compare diffuse diffuse $at\" 'albedo diffuse --samples 1000 -o "
+          "cap.svg'; do bsdf-plot $k >made; grep -q 'Seed 1, 1000 samples' "
+          "cap.caption || echo $k >&2; done; c=conductor:material=Cu; for k in "
+          "\"lobe diffuse $at\" \"lobe3d diffuse $at\" 'slice diffuse -o "
+          "cap.svg' \"ndf rough$c -o cap.svg\" \"fresnel $c -o cap.svg\" "
+          "'ior Ca -o cap.svg' 'colour Ca -o cap.svg'; do bsdf-plot $k >made "
+          "2>said; ! grep -E 'Seed|samples' cap.caption || echo $k >&2; done");
+}
+
+static void mistakes_are_found_with_or_without_a_scale(void **state)
+{
+    (void)state;
+    quiet("cd $T; printf 'name\\tsize\\tpdf\\tsmallest "
+          "scale\\tstatus\\na\\t1\\tfails\\t"
+          "0.01\\tcaught\\nb\\t1\\tfails\\t-\\tcaught\\nc\\t0\\tpasses\\t-"
+          "\\tpassed"
+          "\\n' >found.tsv; bsdf-plot kill-matrix found.tsv -o k.svg >made; "
+          "grep -q '3 mistakes, 2 of which some check finds' k.svg");
+}
+
+/* In the title as in the key. */
+static void long_specs_are_told_apart(void **state)
+{
+    (void)state;
+    quiet(
+        "cd $T; s=roughconductor:eta=0.123456789/0.223456789/0.323456789,k="
+        "2.123456789/2.323456789/2.523456789,distribution=ggx,alpha_v="
+        "0.1234567,specular_reflectance=0.123456789,alpha_u=; bsdf-plot "
+        "compare ${s}0.11 ${s}0.22 --wo 45,0 --samples 1000 -o far.svg >made; "
+        "for n in 11 22; do grep -q \">…alpha_u=0.$n<\" far.svg; grep -q "
+        "\">.*,alpha_u=0.$n<\" far.svg; done; bsdf-plot lobe ${s}0.11 "
+        "${s}0.22 diffuse diffuse --wo 45,0 -o far.svg >made; for t in "
+        "…alpha_u=0.11 …alpha_u=0.22 '3: diffuse' '4: diffuse'; do grep -q "
+        "\">$t<\" far.svg; done");
+}
+
 /* Every row in range and one to each side of it. */
 static void rows_are_those_of_the_page(void **state)
 {
@@ -563,6 +669,9 @@ int main(void)
         { "wrong requests are refused", wrong_requests_are_refused },
         { "a script in the way leaves nothing",
           a_script_in_the_way_leaves_nothing },
+        { "what is read is never replaced", what_is_read_is_never_replaced },
+        { "names are printed as they were given",
+          names_are_printed_as_they_were_given },
         { "a lobe follows the model however narrow",
           a_lobe_follows_the_model_however_narrow },
         { "a surface follows the model however narrow",
@@ -571,6 +680,13 @@ int main(void)
         { "bands are named as they are", bands_are_named_as_they_are },
         { "a colour that is not quite met is warned of",
           a_colour_that_is_not_quite_met_is_warned_of },
+        { "ratios of like models have short numbers",
+          ratios_of_like_models_have_short_numbers },
+        { "captions count the samples of kinds that draw some",
+          captions_count_the_samples_of_kinds_that_draw_some },
+        { "mistakes are found with or without a scale",
+          mistakes_are_found_with_or_without_a_scale },
+        { "long specs are told apart", long_specs_are_told_apart },
         { "rows are those of the page", rows_are_those_of_the_page },
         { "a formula is drawn as what it gives",
           a_formula_is_drawn_as_what_it_gives },

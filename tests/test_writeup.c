@@ -186,6 +186,34 @@ static void the_document_has_its_fonts(void **state)
     assert_has(output, "CMR10");
 }
 
+static void long_specs_stay_on_the_page(void **state)
+{
+    (void)state;
+    if (sh("command -v pdflatex") != 0)
+        skip();
+    done("mkdir $T/long $T/long/tex; cd $T/long; s=course_microfacet:material="
+         "Au,alpha=0.5,distribution=ggx,fresnel_at=half,k_d=0.123456789/"
+         "0.2345/0.8,lambda=exact; printf 'name\\tvalue\\nspec\\t%s\\n' $s "
+         ">numbers.tsv; echo $s $s >file; cp $T/variant.* .; cp "
+         "$T/tex/variant.* tex; printf '= A title\\nOf `{spec}` and `%s`, and "
+         "{spec}, here.\\n\\n- of `{spec}`\\n\\n| a | b |\\n| `{spec}` | "
+         "`{spec}` |\\n\\n! variant | of `{spec}`\\n\\n> file\\n' $s >text; "
+         "$B/bsdf-plot writeup text -o text.tex; pdflatex -halt-on-error "
+         "-interaction=batchmode text; $B/bsdf-plot compare diffuse "
+         "roughconductor:eta=0.123456789/0.223456789/0.323456789,k=2.123456789/"
+         "2.323456789/2.523456789,alpha_u=0.123456789,alpha_v=0.223456789 --wo "
+         "45,0 --samples 1000 -o c.tex; printf '%s\\n' "
+         "'\\documentclass{article}\\usepackage{graphicx,color}' "
+         "'\\begin{document}\\begin{figure}\\caption{\\protect\\input{c."
+         "caption}}' "
+         "'\\end{figure}\\end{document}' >doc.tex; pdflatex -halt-on-error "
+         "-interaction=batchmode doc");
+    assert_int_equal(sh("cd $T; grep -E 'Overfull .hbox .[0-9]{2}' "
+                        "writeup.log long/text.log long/doc.log"),
+                     1);
+    done("rm -r $T/long");
+}
+
 /* -- what is wrong in a text -------------------------------------------------
  */
 
@@ -272,6 +300,7 @@ int main(void)
           every_figure_has_its_data_and_script },
         { "a script makes its figure again", a_script_makes_its_figure_again },
         { "the document has its fonts", the_document_has_its_fonts },
+        { "long specs stay on the page", long_specs_stay_on_the_page },
         { "what is missing is named", what_is_missing_is_named },
         { "formulas become MathML", formulas_become_mathml },
     };
