@@ -23,8 +23,9 @@ static const double hits_least = 1000;
 /* An error of what is compared with is read in favour of the model.  p is
  * uniform where that is at most this part of a standard error, which moves p by
  * 2 * 0.4 times as much, and 0.4 is the largest density of a normal number; and
- * where weights differ by more than the rounding of one and the same. */
-static const double nothing_beside = 0.005, rounding = 1e-12;
+ * where weights differ by more than the rounding of one and the same, which
+ * leaves 2^-52 of the sum of their squares, whose root is 1.5e-8. */
+static const double nothing_beside = 0.005, rounding = 1e-7;
 
 static void part(struct verdict *v, const char *name, struct mean m,
                  struct estimate truth, const char *before)
