@@ -68,6 +68,10 @@ TESTS    := $(patsubst tests/%.c,%,$(wildcard tests/test_*.c))
 RUN      := $(if $(filter sanitize,$(config)),$(filter-out test_calibration \
               test_course test_depth test_docs test_mutants test_writeup,\
               $(TESTS)),$(TESTS))
+# Those that take minutes begin first, so that they do not end alone.
+LONGEST  := test_mutants test_calibration test_writeup test_docs test_plots \
+            test_figures test_report test_checks test_transport test_render
+ORDERED  := $(filter $(RUN),$(LONGEST)) $(filter-out $(LONGEST),$(RUN))
 # Programs of tests/ that `make test` does not run, each with its own target.
 LONG     := $(wildcard $(patsubst %,tests/%.c,bench bench_render mutants baselines calibrate))
 HELPERS  := $(filter-out $(TESTS:%=tests/%.c) $(LONG),$(wildcard tests/*.c))
@@ -386,7 +390,7 @@ test: setup ## set up, build, run every test (config=sanitize: with sanitizers)
 
 # Side by side; what one prints stays together.
 run-tests:
-	@$(MAKE) --no-print-directory -k -O -j$(JOBS) $(RUN:%=run-%)
+	@$(MAKE) --no-print-directory -k -O -j$(JOBS) $(ORDERED:%=run-%)
 
 run-%:
 	@BIN=$(BIN) $(WRAP) $(B)/bin/tests/$*
