@@ -22,7 +22,7 @@ the pools are dropped|validate/check_chi2.c|test_decisions|s/cell_add(&o\.pool\[
 the emptiest pool is dropped|validate/check_chi2.c|test_decisions|s/cell_add(&o\.pool\[expected >= pool_apart_below\], c);/if (expected >= pool_apart_below) cell_add(\&o.pool[1], c);/
 pooled cells are never the worst|validate/check_chi2.c|test_decisions|s/if (!(fabs(r) > 2))/if (!(fabs(r) > 2) || cell[i].share.value * (double)samples < pool_below)/
 cells are chosen by what was observed|validate/check_chi2.c|test_decisions|s/^\( *\)if (expected < pool_below)$/\1if (c.count == 0) continue;\n&/
-expectations are rescaled|validate/check_chi2.c|test_decisions|s/c\.share\.value = fmax(c\.share\.value, 0);/c.share.value = fmax(c.share.value, 0) * (i + 1 < n ? 1 - (double)cell[n - 1].count \/ (double)samples : 0);/
+expectations are rescaled|validate/check_chi2.c|test_decisions|s/const struct cell c = above_0(cell\[i\]);/struct cell c = above_0(cell[i]); c.share.value *= i + 1 < n ? 1 - (double)cell[n - 1].count \/ (double)samples : 0;/
 refused samples are left out|validate/check_chi2.c|test_decisions|s/survey_refusal(v), v->refused/{ 0, 0 }, 0/
 the error of integration is ignored|validate/check_chi2.c|test_decisions|s/fmax(fabs(off) - c\.share\.error \* samples, 0)/fabs(off)/
 the error is ignored by tails|validate/pvalue.c|test_statistics|s/q\.value - q\.error, high = q\.value + q\.error/q.value, high = q.value/

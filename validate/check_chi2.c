@@ -40,11 +40,17 @@ static void cell_add(struct cell *to, struct cell from)
     to->count += from.count;
 }
 
-/* (O - E) / sqrt(E), as far as the error does not explain it.  A share that
- * rounding made negative is as good as 0. */
+/* A share that rounding made negative is as good as 0. */
+static struct cell above_0(struct cell c)
+{
+    c.share.value = fmax(c.share.value, 0);
+    return c;
+}
+
+/* (O - E) / sqrt(E), as far as the error does not explain it. */
 static double residual(struct cell c, double samples)
 {
-    const double expected = fmax(c.share.value, 0) * samples;
+    const double expected = c.share.value * samples;
     const double off = (double)c.count - expected;
     const double excess = fmax(fabs(off) - c.share.error * samples, 0);
     return copysign(excess, off) / sqrt(expected);
@@ -61,8 +67,7 @@ static struct outcome test(const struct cell *cell, size_t n, uint64_t samples)
 {
     struct outcome o = { .degrees = -1 };
     for (size_t i = 0; i < n; i++) {
-        struct cell c = cell[i];
-        c.share.value = fmax(c.share.value, 0);
+        const struct cell c = above_0(cell[i]);
         const double expected = c.share.value * (double)samples;
         if (expected < pool_below)
             cell_add(&o.pool[expected >= pool_apart_below], c);
@@ -140,7 +145,7 @@ static struct worst worst_of(const struct cell *cell, size_t n,
 {
     struct worst w = { n, 1, 0 };
     for (size_t i = 0; i < n; i++) {
-        const double r = residual(cell[i], (double)samples);
+        const double r = residual(above_0(cell[i]), (double)samples);
         if (!(fabs(r) > 2)) /* nor of a mass that is no number */
             continue;
         const double p = pvalue_binomial(cell[i].count, samples, cell[i].share);
