@@ -10,6 +10,8 @@
 /* Where on the lens, in the camera's frame. */
 static struct vec3 on_lens(const struct camera *c, double u, double v)
 {
+    if (!(c->lens_radius > 0))
+        return (struct vec3){ 0, 0, 0 };
     const struct disk_point at = disk_map(u, v);
     return (struct vec3){ c->lens_radius * at.x, c->lens_radius * at.y, 0 };
 }
@@ -37,9 +39,7 @@ INLINE struct ray through(const struct camera *c, double x, double y,
 struct ray camera_ray(const struct camera *c, double x, double y, double lens_u,
                       double lens_v)
 {
-    const struct vec3 pinhole = { 0, 0, 0 };
-    return through(c, x, y,
-                   c->lens_radius > 0 ? on_lens(c, lens_u, lens_v) : pinhole);
+    return through(c, x, y, on_lens(c, lens_u, lens_v));
 }
 
 LANES static void all_through(const struct camera *camera, size_t n,
@@ -63,8 +63,6 @@ void camera_rays(const struct camera *c, size_t n, const double *x,
 {
     struct vecs origin;
     for (size_t i = 0; i < n; i++)
-        vecs_put(&origin, i,
-                 c->lens_radius > 0 ? on_lens(c, lens_u[i], lens_v[i])
-                                    : (struct vec3){ 0, 0, 0 });
+        vecs_put(&origin, i, on_lens(c, lens_u[i], lens_v[i]));
     all_through(c, n, x, y, &origin, out);
 }

@@ -262,11 +262,9 @@ static bool flag(struct reading *r, const xmlNode *n)
     if (!name || strcmp(name, "embree_use_robust_intersections") != 0)
         return loader_unknown(r->l, n, r->err,
                               "expected embree_use_robust_intersections");
-    if (!value || (strcmp(value, "true") != 0 && strcmp(value, "false") != 0))
-        return xml_fail(n, r->err, "value=\"%.60s\": expected true or false",
-                        value ? value : "");
-    r->wishes.robust = value[0] == 't';
-    return true;
+    return (value && mitsuba_truth(value, &r->wishes.robust)) ||
+           xml_fail(n, r->err, "value=\"%.60s\": expected true or false",
+                    value ? value : "");
 }
 
 static bool part(struct reading *r, const xmlNode *n)

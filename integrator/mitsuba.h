@@ -57,6 +57,9 @@ struct affine object_transform(struct object *o, const char *name);
 /** One to three numbers of an element's attribute value. */
 int object_values(struct object *o, const xmlNode *node, double value[3]);
 
+/** Reads "true" or "false"; of anything else value stays. */
+bool mitsuba_truth(const char *text, bool *value);
+
 /** Puts defaults and definitions in the place of $name, everywhere. */
 bool mitsuba_substitute(struct loader *l, struct err *err);
 

@@ -181,16 +181,24 @@ int object_integer(struct object *o, const char *name, int def)
     return (int)value;
 }
 
+bool mitsuba_truth(const char *text, bool *value)
+{
+    const bool yes = strcmp(text, "true") == 0;
+    const bool known = yes || strcmp(text, "false") == 0;
+    *value = known ? yes : *value;
+    return known;
+}
+
 bool object_flag(struct object *o, const char *name, bool def)
 {
     const xmlNode *n = typed(o, name, "boolean", "boolean");
     if (!n)
         return def;
     const char *text = text_of(o, n, "value");
-    if (strcmp(text, "true") == 0 || strcmp(text, "false") == 0)
-        return text[0] == 't';
-    object_fail(o, n, "value=\"%.60s\": expected true or false", text);
-    return def;
+    bool value = def;
+    if (!mitsuba_truth(text, &value))
+        object_fail(o, n, "value=\"%.60s\": expected true or false", text);
+    return value;
 }
 
 const char *object_string(struct object *o, const char *name, const char *def)
