@@ -21,19 +21,19 @@ static double r2_at(double u)
 double beckmann_slope_surely(double a, double u)
 {
     const struct beckmann_seen w = beckmann_seen_at(a);
-    const double target = (1 - u) * w.all;
+    const double target = beckmann_target(w, u);
 
     double low = fm_max(-w.a, -BECKMANN_SLOPE_MAX), high = BECKMANN_SLOPE_MAX;
-    double x = beckmann_start(w, u);
+    double x = beckmann_start_at(w, u);
     for (int i = 0; i < 60; i++) {
-        double e;
         if (!(x > low && x < high))
             x = (low + high) / 2;
-        if (beckmann_above(w.a, x, &e) > target)
+        const struct beckmann_tail t = beckmann_tail_at(x);
+        if (beckmann_above(w.a, x, t) > target)
             low = x;
         else
             high = x;
-        const double step = beckmann_step(w.a, x, target);
+        const double step = beckmann_step(w.a, x, t, target);
         const double next = x + step;
         if (next > -w.a && fabs(step) <= 2e-4 * fm_min(1, w.a + next))
             return next;

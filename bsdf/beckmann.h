@@ -78,36 +78,74 @@ INLINE struct beckmann_seen beckmann_seen_at(double cot)
     };
 }
 
-/* S(x), and exp(-x^2) beside it. */
-INLINE double beckmann_above(double a, double x, double *e)
+/* What S at x is made of. */
+struct beckmann_tail {
+    double e; /* exp(-x^2) */
+    double f; /* erfcx(|x|) */
+};
+
+INLINE double beckmann_e(double x)
 {
-    const double half = a * fm_erfcx(fabs(x)) / 2;
-    *e = fm_exp_minus(x * x);
-    return x < 0 ? a + *e * (0.5 / SQRT_PI - half)
-                 : *e * (0.5 / SQRT_PI + half);
+    return fm_exp_minus(x * x);
+}
+
+INLINE double beckmann_f(double x)
+{
+    return fm_erfcx(fabs(x));
+}
+
+INLINE struct beckmann_tail beckmann_tail_at(double x)
+{
+    return (struct beckmann_tail){ beckmann_e(x), beckmann_f(x) };
+}
+
+/* S(x). */
+INLINE double beckmann_above(double a, double x, struct beckmann_tail t)
+{
+    const double half = a * t.f / 2;
+    return x < 0 ? a + t.e * (0.5 / SQRT_PI - half)
+                 : t.e * (0.5 / SQRT_PI + half);
+}
+
+/* What S is to be for a share u. */
+INLINE double beckmann_target(struct beckmann_seen w, double u)
+{
+    return (1 - u) * w.all;
 }
 
 /* A step of fourth order toward S(x) = target.  With s = a + x and n, d the
  * numerator and the denominator of Newton's, S' = -d = -s e / sqrt(pi),
  * S'' / S' = k / s and S''' / S' = (k^2 - 1 - 2 s^2) / s^2; one division. */
-INLINE double beckmann_step(double a, double x, double target)
+INLINE double beckmann_step(double a, double x, struct beckmann_tail t,
+                            double target)
 {
-    double e;
-    const double n = beckmann_above(a, x, &e) - target;
-    const double s = a + x, k = 1 - 2 * x * s, ds = s * s * e / SQRT_PI;
+    const double n = beckmann_above(a, x, t) - target;
+    const double s = a + x, k = 1 - 2 * x * s, ds = s * s * t.e / SQRT_PI;
     return n * s * (ds + n * k / 2) /
            (ds * (ds + n * k) + n * n * (k * k - 1 - 2 * s * s) / 6);
 }
 
-/* Where to start: between Rayleigh's slopes at a = 0, r, and Gauss' at inf, to
- * whose mean 1 / (2 a) is added.  The Gaussian value is a fit in r and l that
- * is good to .0013.  Near the edge, x > -a, the density is linear first, and a
- * + x at most edge r; never less than the last bound here by much.  Off by .02
- * of the smaller of 1 and a + x as a rule, rarely by .2. */
-INLINE double beckmann_start(struct beckmann_seen w, double u)
+/* Slopes of either end, by which a start is found: Rayleigh's at u, and the
+ * same at 1 - u. */
+INLINE double beckmann_rayleigh(double u)
 {
-    const double r = sqrt(fm_minus_log1m(u));
-    const double l = sqrt(fm_minus_log(fm_max(u, 0x1p-60))), p = r + l;
+    return sqrt(fm_minus_log1m(u));
+}
+
+INLINE double beckmann_rayleigh_rest(double u)
+{
+    return sqrt(fm_minus_log(fm_max(u, 0x1p-60)));
+}
+
+/* Where to start: between Rayleigh's slopes at a = 0, r, and Gauss' at inf, to
+ * whose mean 1 / (2 a) is added.  The Gaussian value is a fit in r and l, the
+ * slopes of either end, that is good to .0013.  Near the edge, x > -a, the
+ * density is linear first, and a + x at most edge r; never less than the last
+ * bound here by much.  Off by .02 of the smaller of 1 and a + x as a rule,
+ * rarely by .2. */
+INLINE double beckmann_start(struct beckmann_seen w, double r, double l)
+{
+    const double p = r + l;
     const double gauss =
         (r - l) *
         (0.393952464 +
@@ -118,29 +156,31 @@ INLINE double beckmann_start(struct beckmann_seen w, double u)
     return fm_min(fm_max(x, least - w.a), edge - w.a);
 }
 
-/* Two steps; false where they may not have arrived, less than one u in
- * thousand.  Fourth order: a last step of 2e-4 of the local scale leaves 1e-15.
- */
-INLINE double beckmann_slope_soon(struct beckmann_seen w, double u,
-                                  bool *arrived)
+INLINE double beckmann_start_at(struct beckmann_seen w, double u)
 {
-    const double target = (1 - u) * w.all;
-    const double start = beckmann_start(w, u);
-    const double x = start + beckmann_step(w.a, start, target);
-    const double step = beckmann_step(w.a, x, target);
-    *arrived = (fabs(x + step) <= BECKMANN_SLOPE_MAX) &
-               (fabs(step) <= 2e-4 * fm_min(1, w.a + x + step));
-    return x + step;
+    return beckmann_start(w, beckmann_rayleigh(u), beckmann_rayleigh_rest(u));
 }
 
-/** The same by as many steps as it takes, within a bracket. */
+/* Whether a second step from x is the last; if not, as of less than one u in
+ * thousand, the sure way is to be taken.  Fourth order: a last step of 2e-4 of
+ * the local scale leaves 1e-15. */
+INLINE bool beckmann_arrived(double a, double x, double step)
+{
+    return (fabs(x + step) <= BECKMANN_SLOPE_MAX) &
+           (fabs(step) <= 2e-4 * fm_min(1, a + x + step));
+}
+
+/** By as many steps as it takes, within a bracket. */
 double beckmann_slope_surely(double a, double u);
 
 static inline double beckmann_slope(struct beckmann_seen w, double u)
 {
-    bool arrived;
-    const double x = beckmann_slope_soon(w, u, &arrived);
-    return arrived ? x : beckmann_slope_surely(w.a, u);
+    const double target = beckmann_target(w, u);
+    double x = beckmann_start_at(w, u);
+    x += beckmann_step(w.a, x, beckmann_tail_at(x), target);
+    const double step = beckmann_step(w.a, x, beckmann_tail_at(x), target);
+    return beckmann_arrived(w.a, x, step) ? x + step
+                                          : beckmann_slope_surely(w.a, u);
 }
 
 #endif

@@ -61,8 +61,11 @@ INLINE void all(struct facets f, size_t n, struct dirs u, double *mx,
                 double *my, double *mz)
 {
     LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        mz[i] = facets_r2_at(f, u.x[i]);
+    LANES_LOOP
     for (size_t i = 0; i < n; i++) {
-        const struct vec3 m = facets_all(f, u.x[i], u.y[i]);
+        const struct vec3 m = facets_around(f, mz[i], u.y[i]);
         mx[i] = m.x, my[i] = m.y, mz[i] = m.z;
     }
 }
@@ -157,23 +160,79 @@ INLINE struct beckmann_seen beckmann_at(const struct views *v, size_t i)
     };
 }
 
-/* Slopes along and across w, and which of them are not to be trusted. */
+/* Tails at n slopes, short loops as in along_loop. */
+struct tails {
+    double e[LANES_MAX], f[LANES_MAX];
+};
+
+INLINE void tail_loop(size_t n, const double *x, struct tails *t)
+{
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        t->f[i] = beckmann_f(x[i]);
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        t->e[i] = beckmann_e(x[i]);
+}
+
+INLINE struct beckmann_tail tail_at(const struct tails *t, size_t i)
+{
+    return (struct beckmann_tail){ t->e[i], t->f[i] };
+}
+
+/* Slopes along w, and which of them are not to be trusted.  In short loops: a
+ * processor that waits for a quotient has room for some dozens of instructions,
+ * which are then those of other lanes. */
+INLINE void along_loop(size_t n, const struct views *v, bool one,
+                       const double *u, double *x, uint64_t *late)
+{
+    struct tails t;
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        t.e[i] = beckmann_rayleigh(u[i]);
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        t.f[i] = beckmann_rayleigh_rest(u[i]);
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        x[i] = beckmann_start(beckmann_at(v, one ? 0 : i), t.e[i], t.f[i]);
+    tail_loop(n, x, &t);
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct beckmann_seen w = beckmann_at(v, one ? 0 : i);
+        x[i] +=
+            beckmann_step(w.a, x[i], tail_at(&t, i), beckmann_target(w, u[i]));
+    }
+    tail_loop(n, x, &t);
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        const struct beckmann_seen w = beckmann_at(v, one ? 0 : i);
+        const double step =
+            beckmann_step(w.a, x[i], tail_at(&t, i), beckmann_target(w, u[i]));
+        late[i] = beckmann_arrived(w.a, x[i], step) ? 0 : 1;
+        x[i] += step;
+    }
+}
+
+/* The same across w. */
+INLINE void across_loop(size_t n, const double *u, double *y, uint64_t *late)
+{
+    double w[LANES_MAX];
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++)
+        w[i] = fm_probit_w(u[i]);
+    LANES_LOOP
+    for (size_t i = 0; i < n; i++) {
+        y[i] = fm_probit_near(u[i], w[i]);
+        late[i] |= fm_probit_is_near(w[i]) ? 0 : 2;
+    }
+}
+
 INLINE void slope_loop(size_t n, const struct views *v, bool one, struct dirs u,
                        double *x, double *y, uint64_t *late)
 {
-    LANES_LOOP
-    for (size_t i = 0; i < n; i++) {
-        bool arrived;
-        x[i] =
-            beckmann_slope_soon(beckmann_at(v, one ? 0 : i), u.x[i], &arrived);
-        late[i] = arrived ? 0 : 1;
-    }
-    LANES_LOOP
-    for (size_t i = 0; i < n; i++) {
-        const double w = fm_probit_w(u.y[i]);
-        y[i] = fm_probit_near(u.y[i], w);
-        late[i] |= fm_probit_is_near(w) ? 0 : 2;
-    }
+    along_loop(n, v, one, u.x, x, late);
+    across_loop(n, u.y, y, late);
 }
 
 LANES static void slope_lanes(size_t n, const struct views *v, bool one,

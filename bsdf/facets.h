@@ -46,7 +46,7 @@ INLINE struct vec3 facets_half(struct vec3 wo, struct vec3 wi, double *h2)
 /** What D of the normal along m is made of, which may have any length and
  * m.z > 0; m2 = m.m. */
 struct facets_part {
-    double p22;     /* per projected area of the slope */
+    double slope2;  /* of the unit roughness, squared; GGX has it in t */
     double t;       /* 1 / cos^2, or over 1 + slope^2 with GGX */
     double inverse; /* t / m2 */
 };
@@ -54,30 +54,37 @@ struct facets_part {
 INLINE struct facets_part facets_part(struct facets f, struct vec3 m, double m2)
 {
     const double x = m.x * f.per_u, y = m.y * f.per_v;
-    const double r2 = x * x + y * y, per_area = f.per_u * f.per_v;
+    const double r2 = x * x + y * y;
     const double z2 = fm_max(m.z * m.z, 1e-300);
     if (f.family == NDF_GGX) { /* (1 + tan^2) / (1 + slope^2) */
         const double inverse = 1 / (z2 + r2);
-        return (struct facets_part){ per_area / PI, m2 * inverse, inverse };
+        return (struct facets_part){ 0, m2 * inverse, inverse };
     }
     /* Where P22 is 0, 1 / cos^4 may be infinite. */
     const double inverse = 1 / z2, slope2 = r2 * inverse;
     const double finite = slope2 > 708 ? 0 : inverse;
-    return (struct facets_part){ beckmann_p22(slope2) * per_area, m2 * finite,
-                                 finite };
+    return (struct facets_part){ slope2, m2 * finite, finite };
+}
+
+/** The density of slopes that is left of D, per projected area. */
+INLINE double facets_p22(struct facets f, double slope2)
+{
+    const double per_area = f.per_u * f.per_v;
+    return f.family == NDF_GGX ? per_area / PI
+                               : beckmann_p22(slope2) * per_area;
 }
 
 INLINE double facets_d(struct facets f, struct vec3 m, double m2)
 {
     const struct facets_part d = facets_part(f, m, m2);
-    return d.p22 * (d.t * d.t);
+    return facets_p22(f, d.slope2) * (d.t * d.t);
 }
 
 /** D(m) m.z / m2. */
 INLINE double facets_d_z(struct facets f, struct vec3 m, double m2)
 {
     const struct facets_part d = facets_part(f, m, m2);
-    return d.p22 * (d.t * (d.inverse * m.z));
+    return facets_p22(f, d.slope2) * (d.t * (d.inverse * m.z));
 }
 
 /** How long the horizontal part of w is where the roughness is 1, squared. */
@@ -94,14 +101,25 @@ INLINE double facets_lambda(struct facets f, struct vec3 w)
                                : beckmann_lambda(z / sqrt(s2));
 }
 
+/** The squared slope, at unit roughness, below which a share u of all is. */
+INLINE double facets_r2_at(struct facets f, double u)
+{
+    return f.family == NDF_GGX ? ggx_r2_at(u) : beckmann_r2_at(u);
+}
+
+/** A normal with that slope, v turns around, of any length. */
+INLINE struct vec3 facets_around(struct facets f, double r2, double v)
+{
+    double sine, cosine;
+    const double r = sqrt(r2);
+    fm_sincos_turns(v, &sine, &cosine);
+    return (struct vec3){ f.alpha_u * r * cosine, f.alpha_v * r * sine, 1 };
+}
+
 /** A normal with density D(m) m.z per solid angle, of any length. */
 INLINE struct vec3 facets_all(struct facets f, double u, double v)
 {
-    double sine, cosine;
-    const double r =
-        sqrt(f.family == NDF_GGX ? ggx_r2_at(u) : beckmann_r2_at(u));
-    fm_sincos_turns(v, &sine, &cosine);
-    return (struct vec3){ f.alpha_u * r * cosine, f.alpha_v * r * sine, 1 };
+    return facets_around(f, facets_r2_at(f, u), v);
 }
 
 /** What the sampling of visible normals needs of w alone; seen from below, w.z

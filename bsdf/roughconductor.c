@@ -102,15 +102,32 @@ INLINE double shape(const struct roughconductor *m, struct facets facets,
     return seen ? f : 0;
 }
 
-/* Of visible normals from g1_per_cos, or of all. */
-INLINE double density(struct facets facets, bool visible, struct vec3 wo,
-                      struct vec3 wi, double g1)
+/* Of visible normals from g1_per_cos, or of all: a density of slopes at slope2
+ * times a factor, which is 0 unless both are above. */
+struct density {
+    double slope2, factor;
+};
+
+INLINE struct density density_at(struct facets facets, bool visible,
+                                 struct vec3 wo, struct vec3 wi, double g1)
 {
     double h2;
     const struct vec3 h = facets_half(wo, wi, &h2);
-    const double p =
-        visible ? facets_d(facets, h, h2) * g1 : facets_d_z(facets, h, h2) / 2;
-    return above(wo, wi) ? p : 0;
+    const struct facets_part d = facets_part(facets, h, h2);
+    const double factor =
+        visible ? d.t * d.t * g1 : d.t * (d.inverse * h.z) / 2;
+    return (struct density){ d.slope2, above(wo, wi) ? factor : 0 };
+}
+
+INLINE double density_of(struct facets facets, struct density d)
+{
+    return facets_p22(facets, d.slope2) * d.factor;
+}
+
+INLINE double density(struct facets facets, bool visible, struct vec3 wo,
+                      struct vec3 wi, double g1)
+{
+    return density_of(facets, density_at(facets, visible, wo, wi, g1));
 }
 
 /* A sample without its weight, by a facet with the normal's z. */
@@ -119,15 +136,13 @@ struct draw {
     double pdf, cos_d, z;
 };
 
-/* By a facet with its normal along h, of any length. */
-INLINE struct draw draw_at(struct facets facets, bool visible, struct vec3 wo,
-                           struct vec3 h, double g1)
+/* By a facet with its normal along h, of any length; the pdf is still to be
+ * found. */
+INLINE struct draw draw_by(struct vec3 wo, struct vec3 h)
 {
-    const double length = 1 / vec3_length(h);
-    const struct vec3 n = vec3_scale(length, h);
+    const struct vec3 n = vec3_unit(h);
     const struct vec3 wi = vec3_unit_again(vec3_reflect(wo, n));
-    return (struct draw){ wi, density(facets, visible, wo, wi, g1),
-                          vec3_dot(wo, n), n.z };
+    return (struct draw){ .wi = wi, .cos_d = vec3_dot(wo, n), .z = n.z };
 }
 
 /* All 0 where a draw is refused; p is 0 unless both are above. */
@@ -204,8 +219,9 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
                               ? facets_visible(m->facets, wo, u.x, u.y)
                               : facets_all(m->facets, u.x, u.y);
     const double lo = facets_lambda(m->facets, wo);
-    const struct draw s = draw_kept(
-        draw_at(m->facets, m->sample_visible, wo, h, g1_per_cos(wo, lo)));
+    struct draw s = draw_by(wo, h);
+    s.pdf = density(m->facets, m->sample_visible, wo, s.wi, g1_per_cos(wo, lo));
+    s = draw_kept(s);
     return (struct bsdf_sample){
         .wi = s.wi,
         .pdf = s.pdf,
@@ -218,7 +234,7 @@ static struct bsdf_sample sample(const void *state, struct vec3 wo,
 
 struct lanes {
     double lo[LANES_MAX], g1[LANES_MAX]; /* of wo: lambda, g1_per_cos */
-    double cos_d[LANES_MAX], shape[LANES_MAX];
+    double cos_d[LANES_MAX], shape[LANES_MAX], slope2[LANES_MAX];
     double hx[LANES_MAX], hy[LANES_MAX], hz[LANES_MAX];
     bool one; /* all wo of the call are the same */
 };
@@ -274,29 +290,39 @@ LANES static void shape_lanes(const struct roughconductor *m, size_t n,
         shape_loop(m, facets_as(m->facets, NDF_BECKMANN), n, wo, wi, l);
 }
 
-/* After a glance. */
+/* After a glance.  An exponential has a loop of its own, as in draw_loop. */
 INLINE void density_loop(struct facets facets, bool visible, size_t n,
-                         struct dirs wo, struct dirs wi, const struct lanes *l,
+                         struct dirs wo, struct dirs wi, struct lanes *l,
                          double *p)
 {
+    const bool later = facets.family != NDF_GGX;
     if (l->one) {
         const struct vec3 o = dirs_at(wo, 0);
         const double g1 = l->g1[0];
         LANES_LOOP
-        for (size_t i = 0; i < n; i++)
-            p[i] = density(facets, visible, o, dirs_at(wi, i), g1);
-        return;
+        for (size_t i = 0; i < n; i++) {
+            const struct density d =
+                density_at(facets, visible, o, dirs_at(wi, i), g1);
+            l->slope2[i] = d.slope2;
+            p[i] = later ? d.factor : density_of(facets, d);
+        }
+    } else {
+        LANES_LOOP
+        for (size_t i = 0; i < n; i++) {
+            const struct density d = density_at(facets, visible, dirs_at(wo, i),
+                                                dirs_at(wi, i), l->g1[i]);
+            l->slope2[i] = d.slope2;
+            p[i] = later ? d.factor : density_of(facets, d);
+        }
     }
     LANES_LOOP
-    for (size_t i = 0; i < n; i++)
-        p[i] =
-            density(facets, visible, dirs_at(wo, i), dirs_at(wi, i), l->g1[i]);
+    for (size_t i = 0; i < (later ? n : 0); i++)
+        p[i] = density_of(facets, (struct density){ l->slope2[i], p[i] });
 }
 
 /* Each of the two a loop without a branch on the family. */
 LANES static void density_visible(struct facets f, size_t n, struct dirs wo,
-                                  struct dirs wi, const struct lanes *l,
-                                  double *p)
+                                  struct dirs wi, struct lanes *l, double *p)
 {
     if (f.family == NDF_GGX)
         density_loop(facets_as(f, NDF_GGX), true, n, wo, wi, l, p);
@@ -305,7 +331,7 @@ LANES static void density_visible(struct facets f, size_t n, struct dirs wo,
 }
 
 LANES static void density_all(struct facets f, size_t n, struct dirs wo,
-                              struct dirs wi, const struct lanes *l, double *p)
+                              struct dirs wi, struct lanes *l, double *p)
 {
     if (f.family == NDF_GGX)
         density_loop(facets_as(f, NDF_GGX), false, n, wo, wi, l, p);
@@ -329,6 +355,8 @@ INLINE void draw_put(struct lanes *l, const struct bsdf_samples *to, size_t i,
     l->cos_d[i] = s.cos_d, l->hz[i] = s.z;
 }
 
+/* In short loops: a processor that waits for a root or a quotient has room for
+ * some dozens of instructions, which are then those of other lanes. */
 INLINE void draw_loop(struct facets facets, bool visible, size_t n,
                       struct dirs wo, struct lanes *l,
                       const struct bsdf_samples *out)
@@ -337,9 +365,10 @@ INLINE void draw_loop(struct facets facets, bool visible, size_t n,
     LANES_LOOP
     for (size_t i = 0; i < n; i++) {
         const struct vec3 h = { l->hx[i], l->hy[i], l->hz[i] };
-        draw_put(l, &to, i,
-                 draw_at(facets, visible, dirs_at(wo, i), h, l->g1[i]));
+        draw_put(l, &to, i, draw_by(dirs_at(wo, i), h));
     }
+    density_loop(facets, visible, n, wo, (struct dirs){ to.x, to.y, to.z }, l,
+                 to.pdf);
     LANES_LOOP
     for (size_t i = 0; i < n; i++)
         draw_put(l, &to, i, draw_kept(draw_of(l, &to, i)));
