@@ -263,8 +263,7 @@ static const double mass_tolerance = 1e-10;
 static const long mass_budget = 20000000;
 
 struct lobe {
-    const struct bsdf *bsdf;
-    struct vec3 wo;
+    const struct subject *subject;
     long *evaluations;
 };
 
@@ -273,9 +272,7 @@ enum { INTERVALS = 32, NODES = INTERVALS + 1, GAUSS = 16 };
 static void pdf_at(const void *context, size_t n, struct dirs w, double *pdf)
 {
     const struct lobe *l = context;
-    const struct plan plan = { .seed = 1 };
-    const struct subject s = subject_plain(l->bsdf, l->wo, &plan);
-    subject_pdf(&s, n, w, pdf);
+    subject_pdf(l->subject, n, w, pdf);
     *l->evaluations += (long)n;
 }
 
@@ -403,8 +400,8 @@ static struct method ours(const struct partition *p, struct lobe l,
     struct method m = { 0 };
     const double start = seconds();
     l.evaluations = &m.evaluations;
-    partition_integrate(p, pdf_at, &l, 1, mass_tolerance, 2 * BATCH,
-                        mass_budget, mass);
+    partition_integrate(p, pdf_at, &l, 1, mass_tolerance,
+                        subject_batch(l.subject), mass_budget, mass);
     m.ms = (seconds() - start) * 1e3;
     return m;
 }
@@ -424,13 +421,13 @@ static struct masses time_masses(const struct bsdf *b)
     double time[2][MASS_RUNS];
     struct masses m = { .bins = bins };
     double *truth = reference_masses(
-        p, (struct lobe){ b, wo, &m.plain.evaluations }, &m.total);
+        p, (struct lobe){ &s, &m.plain.evaluations }, &m.total);
     for (int run = 0; run < MASS_RUNS; run++) {
         double error[2] = { 0, 0 };
-        m.plain = plain(p, (struct lobe){ b, wo, NULL }, mass);
+        m.plain = plain(p, (struct lobe){ &s, NULL }, mass);
         for (size_t i = 0; i < bins; i++)
             error[0] = fmax(error[0], fabs(mass[i].value - truth[i]));
-        m.ours = ours(p, (struct lobe){ b, wo, NULL }, mass);
+        m.ours = ours(p, (struct lobe){ &s, NULL }, mass);
         for (size_t i = 0; i < bins; i++) {
             error[1] = fmax(error[1], fabs(mass[i].value - truth[i]));
             m.bound = fmax(m.bound, mass[i].error);
@@ -635,7 +632,9 @@ static double grid_error(const struct bsdf *b, struct vec3 wo,
 {
     const struct rule rule = gauss(GAUSS);
     long evaluations = 0;
-    const struct lobe l = { b, wo, &evaluations };
+    const struct plan plan = { .seed = 1 };
+    const struct subject s = subject_plain(b, wo, &plan);
+    const struct lobe l = { &s, &evaluations };
     double most = 0;
     for (int i = 0; i < CELLS; i++) {
         const int row = i / SLICES, column = i % SLICES;
