@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bsdf/fresnel.h"
 #include "bsdf/ndf.h"
 #include "validate/checks.h"
 #include "validate/energy.h"
@@ -601,9 +602,11 @@ static void diagnose_constant(struct guess *g, const struct subject *s)
     double most = 0;
     for (int b = 0; e && b < bsdf_bands(s->bsdf)->count; b++)
         most = fmax(most, e->albedo[b].value);
-    if (!(most > 1 + 1e-6))
-        return;
     const unsigned matt = BSDF_DIFFUSE_REFLECTION | BSDF_DIFFUSE_TRANSMISSION;
+    const unsigned rough =
+        matt | BSDF_GLOSSY_REFLECTION | BSDF_GLOSSY_TRANSMISSION;
+    if (!(most > 1 + 1e-6) || !(s->claims.lobes & rough))
+        return;
     const bool pi = !(s->claims.lobes & ~matt) && most <= PI * (1 + 1e-6);
     suggest_rank(g, 0.85,
                  "f lacks a division by a constant: the factor %s too many "
@@ -677,24 +680,60 @@ static void diagnose_delta(struct guess *g, const struct subject *s)
     }
 }
 
-/* A delta's energy there and back, whose ratio is a power of eta. */
-static void diagnose_delta_reciprocity(struct guess *g, const struct verdict *v,
-                                       const struct subject *s)
+/* What a delta on one side adds to the mean weight of wo's samples; 0 where
+ * none is drawn. */
+static double delta_share(const struct bsdf *b, struct vec3 wo, bool through)
 {
-    const double n2 = v->has_wi ? subject_compression(s, v->wi) : 1;
-    if (n2 == 1 || !(s->claims.lobes & BSDF_DELTA_TRANSMISSION))
+    enum { DRAWS = 256 };
+    for (int i = 0; i < DRAWS; i++) {
+        const struct vec3 u = { 0.5, 0.5, (i + 0.5) / DRAWS };
+        const struct bsdf_sample a = bsdf_sample(b, wo, u);
+        if (a.delta && (a.wi.z * wo.z < 0) == through)
+            return a.pdf * a.weight.band[0];
+    }
+    return 0;
+}
+
+/* Straight through and back, where Fresnel's equations say the same both ways,
+ * a weight is over eta^2 there and over 1 / eta^2 back. */
+static void diagnose_transmission(struct guess *g, const struct subject *s)
+{
+    static const char *const texts[] = {
+        "is off by the factor eta^2 one way",
+        "lacks the factor eta^2 either way",
+        "is off by the factor eta^2 one way, by eta^4 the other",
+        "has the factor eta^2 upside down: times it for over it, either way",
+    };
+    const double eta2 = s->claims.eta * s->claims.eta;
+    if (eta2 == 1 || !(s->claims.lobes & BSDF_DELTA_TRANSMISSION))
         return;
-    /* 1 - smaller / larger is what the check says. */
-    const double ratio = 1 / (1 - v->value);
-    const double log_n2 = fabs(log(n2));
-    for (int power = 1; power <= 3; power++)
-        if (near(log(ratio), power * log_n2))
-            suggest_rank(
-                g, 0.99,
-                "the weight of transmission is off by the factor eta^2%s",
-                power == 1   ? ""
-                : power == 2 ? " on either way"
-                             : ", and more");
+    const double there = delta_share(s->bsdf, (struct vec3){ 0, 0, 1 }, true);
+    const double back = delta_share(s->bsdf, (struct vec3){ 0, 0, -1 }, true);
+    const double power = log(there / back * eta2 * eta2) / log(eta2);
+    for (int i = 0; i < 4; i++)
+        if (fabs(power - (i + 1)) < 1e-3)
+            suggest_rank(g, 0.99, "the weight of transmission %s", texts[i]);
+}
+
+/* Schlick's reflectance is one of the angle in the thinner medium; by that in
+ * the denser one, it is another there and back. */
+static void diagnose_schlick(struct guess *g, const struct subject *s)
+{
+    const unsigned both = BSDF_DELTA_REFLECTION | BSDF_DELTA_TRANSMISSION;
+    const double eta = s->claims.eta, n = fmax(eta, 1 / eta);
+    if (n == 1 || (s->claims.lobes & both) != both)
+        return;
+    const double cos_thin = 0.6, sine = 0.8 / n,
+                 cos_dense = sqrt(1 - sine * sine);
+    const double r0 = (n - 1) / (n + 1) * ((n - 1) / (n + 1));
+    const double right = fresnel_schlick(cos_thin, r0);
+    const double wrong = fresnel_schlick(cos_dense, r0);
+    const struct vec3 wo = { sine, 0, eta > 1 ? -cos_dense : cos_dense };
+    const double seen = delta_share(s->bsdf, wo, false);
+    if (near(seen, wrong) && !near(seen, right))
+        suggest_rank(g, 0.98,
+                     "Fresnel at the wrong angle: Schlick's reflectance by the "
+                     "cosine in the denser medium");
 }
 
 /* -- all of it ------------------------------------------------------------- */
@@ -740,9 +779,10 @@ void diagnose(const struct subject *s, struct verdict *verdict)
     if (failed(verdict, "pdf") || failed(verdict, "chi2") ||
         failed(verdict, "jacobian"))
         diagnose_density(&density, s, clues);
+    if (failed(verdict, "reciprocity") || failed(verdict, "energy"))
+        diagnose_transmission(&back, s);
     if (failed(verdict, "reciprocity")) {
-        diagnose_delta_reciprocity(&back, &verdict[checks_find("reciprocity")],
-                                   s);
+        diagnose_schlick(&back, s);
         diagnose_reciprocity(&back, s, clues);
     }
     if (failed(verdict, "furnace"))
