@@ -62,7 +62,7 @@ struct outcome {
     struct mutant_found at_1;  /* at the original size */
     double scale;              /* the smallest that failed; 0 if none did */
     struct mutant_found least; /* at that scale */
-    unsigned besides;          /* checks that failed at a smaller size alone */
+    unsigned besides;          /* checks that fail at smaller sizes alone */
     char why[256];             /* it could not be run; or "" */
     bool done;
 };
@@ -86,7 +86,7 @@ static void bisect(struct outcome *o, const struct plan *plan)
         struct mutant_found found;
         if (!run_at(o, ldexp(1, -middle), plan, &found))
             return;
-        /* What failed for no reason of the mistake's is none of its catches. */
+        /* Catches are counted of the checks that see the whole mistake. */
         o->besides |= found.failed & ~o->at_1.failed;
         found.failed &= o->at_1.failed;
         if (found.failed) {
@@ -180,7 +180,7 @@ static void print_row(const struct outcome *o)
         printf(": the mark can go");
     if (o->besides) {
         mutant_names(o->besides, names, sizeof names);
-        printf(", and at a smaller size a false alarm of %s", names);
+        printf(", and at a smaller size by %s, which passed this one", names);
     }
     printf("\n");
 }
@@ -236,8 +236,8 @@ static void write_rows(FILE *f, const struct request *r,
     for (int c = 0; c < checks_count(); c++)
         fprintf(f, "\t%s", checks[c]->name);
     fprintf(f, "\tsmallest scale\tsmallest size\tby\tstatus\tdiagnosis "
-               "expected\tdiagnosis given\tdiagnosis is\twhy\tfalse alarms at "
-               "smaller sizes\n");
+               "expected\tdiagnosis given\tdiagnosis is\twhy\tfails at smaller "
+               "sizes alone\n");
     for (int i = 0; i < n; i++) {
         const struct mutant *m = o[i].m;
         fprintf(f, "%s\t%s\t%s\t%s\t%s\t%g", m->bug, m->name,
