@@ -205,8 +205,10 @@ static bool angles_read(const char *line, double angle[4], struct err *err)
         line = end;
     }
     line += strspn(line, " \t\r\n");
-    return *line == '\0' ||
-           err_set(err, "\"%.40s\" after phi_i: expected four numbers", line);
+    const size_t rest = strcspn(line, "\r\n");
+    return rest == 0 ||
+           err_set(err, "\"%.*s\" after phi_i: expected four numbers",
+                   (int)(rest < 40 ? rest : 40), line);
 }
 
 static void numbers_print(const double *x, int n, char last)
