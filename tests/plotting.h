@@ -1,78 +1,35 @@
 /* plotting.h - what the tests of bsdf-plot share
  *
- * bsdf-plot is in the folder that BIN names, build/bin by default; the tests
- * run in the root of the repository and write only into a folder of their own,
- * $T.
+ * They run in the root of the repository and write only into $T.
  */
 #ifndef TESTS_PLOTTING_H
 #define TESTS_PLOTTING_H
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "tests/close.h"
 #include "tests/shell.h"
 
-enum { OUTPUT_MAX = 1 << 16, COLUMNS_MAX = 16 };
-
-/* Where the programs are, the test's own folder, what a command printed. */
-static char bin[4096], folder[64], output[OUTPUT_MAX];
-
-/* Runs a shell command with the program in PATH and the test's own folder as
- * $T; its exit status, or -1 if it was killed; output has what it printed. */
-static inline int sh(const char *command)
-{
-    return shell(command, output, OUTPUT_MAX);
-}
+enum { COLUMNS_MAX = 16 };
 
 /* Commands that all succeed, without a word on standard error. */
 static inline void quiet(const char *command)
 {
     char line[8192];
-    snprintf(line, sizeof line, "{ set -e; %s; } 2>&1 >$T/out </dev/null",
-             command);
-    const int status = sh(line);
-    if (status != 0 || *output)
-        print_error("%s: status %d: %s\n", command, status, output);
-    assert_int_equal(status, 0);
-    assert_string_equal(output, "");
-}
-
-/* A wrong request: status 2, both parts on standard error, and no file. */
-static inline void refused(const char *command, const char *a, const char *b)
-{
-    char line[1024];
-    quiet("mkdir $T/refused");
-    snprintf(line, sizeof line,
-             "{ cd $T/refused && %s; } 2>&1 >$T/printed </dev/null", command);
-    const int status = sh(line);
-    if (status != 2)
-        print_error("%s: status %d: %s\n", command, status, output);
-    assert_int_equal(status, 2);
-    assert_has(output, a);
-    assert_has(output, b);
-    quiet("[ ! -s $T/printed ]; rmdir $T/refused");
+    snprintf(line, sizeof line, "{ set -e; %s; } 2>&1 >$T/out", command);
+    prints(line, "");
 }
 
 static inline int setup(void **state)
 {
     (void)state;
-    unsetenv("BSDF_IOR_PATH");
-    return shell_setup("plots", bin, folder);
-}
-
-static inline int teardown(void **state)
-{
-    (void)state;
-    return sh("rm -rf \"$T\"");
+    return shell_setup("plots", "");
 }
 
 static inline char *read_all(const char *name, size_t *size)
 {
-    char path[512];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
+    const char *path = in_folder(name);
     FILE *f = fopen(path, "rb");
     if (!f)
         print_error("%s is not there\n", path);

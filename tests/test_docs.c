@@ -1,10 +1,9 @@
 /* test_docs.c - what the pages say, done as they say it
  *
  * The commands of a page's sh blocks run in a folder of the test's own, $T/..,
- * and each line of its text blocks must be a line that they printed.  BIN has
- * the programs, as in test_cli.  Where a page builds, it does so in a copy of
- * the sources, with what is built already beside them; FRESH=1 leaves that
- * out, as for somebody who has just cloned.
+ * and each line of its text blocks must be a line that they printed.  Where a
+ * page builds, it does so in a copy of the sources, with what is built already
+ * beside them; FRESH=1 leaves that out, as for somebody who has just cloned.
  */
 #include <stdbool.h>
 #include <stdio.h>
@@ -13,31 +12,6 @@
 
 #include "tests/close.h"
 #include "tests/shell.h"
-
-enum { OUTPUT_MAX = 1 << 16 };
-
-static char folder[64], output[OUTPUT_MAX];
-
-/* As in test_install: status and output of a shell command, both streams. */
-static int sh(const char *command)
-{
-    char line[4096];
-    snprintf(line, sizeof line, "exec 2>&1 </dev/null; %s", command);
-    return shell(line, output, OUTPUT_MAX);
-}
-
-static void does(const char *command)
-{
-    const int status = sh(command);
-    if (status != 0)
-        fail_msg("%s: status %d: %s", command, status, output);
-}
-
-static void prints(const char *command, const char *expected)
-{
-    does(command);
-    assert_string_equal(output, expected);
-}
 
 /* Runs the blocks of a page's sections (all: "") in a folder below $T. */
 static void replays(const char *page, const char *sections, const char *where)
@@ -61,21 +35,10 @@ static void replays(const char *page, const char *sections, const char *where)
 static int setup(void **state)
 {
     (void)state;
-    static char bin[4096];
-    char *root = realpath(".", NULL);
-    unsetenv("BSDF_IOR_PATH");
-    unsetenv("BSDF_PLUGIN_HOST");
-    const bool good = root && shell_setup("docs", bin, folder) == 0 &&
-                      !setenv("BIN", bin, 1) && !setenv("ROOT", root, 1) &&
-                      !setenv("BSDF", root, 1) && !setenv("CPATH", root, 1);
-    free(root);
-    return good ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    return sh("rm -rf \"$T\"");
+    if (shell_setup("docs", "exec 2>&1; ") != 0)
+        return -1;
+    return setenv("BSDF", getenv("ROOT"), 1) ||
+           setenv("CPATH", getenv("ROOT"), 1);
 }
 
 /* The sources as a clone has them, and what was made of them in the folder
@@ -255,5 +218,5 @@ int main(void)
         { "the shell completes what there is",
           the_shell_completes_what_there_is },
     };
-    return cmocka_run_group_tests_name("docs", tests, setup, teardown);
+    return cmocka_run_group_tests_name("docs", tests, setup, shell_teardown);
 }

@@ -240,9 +240,9 @@ static void nothing_is_left_where_gnuplot_fails(void **state)
 {
     (void)state;
     quiet("mkdir $T/fails; cd $T/fails; echo 'no such command' >s.gp");
-    assert_int_equal(sh("cd $T/fails; bsdf-plot lobe diffuse --wo 20,0 --style "
-                        "s.gp -o x.tex 2>&1 >made"),
-                     2);
+    ends("cd $T/fails; bsdf-plot lobe diffuse --wo 20,0 --style s.gp -o x.tex "
+         "2>&1 >made",
+         2);
     assert_has(output, "no such command");
     assert_has(output, "gnuplot failed");
     quiet("cd $T/fails; [ \"$(ls | tr '\\n' ' ')\" = 'made s.gp x.caption x.gp "
@@ -277,10 +277,10 @@ static void a_caption_says_how_it_was_made(void **state)
 static void a_window_is_opened_or_one_line_says_why_not(void **state)
 {
     (void)state;
-    const char *const line =
-        "cd $T; rm -f win.*; { env -u DISPLAY -u WAYLAND_DISPLAY bsdf-plot "
-        "lobe diffuse --wo 20,0 --interactive -o win.svg 2>&1 >made; }";
-    assert_int_equal(sh(line), 2);
+    ends("cd $T; rm -f win.*; { env -u DISPLAY -u WAYLAND_DISPLAY bsdf-plot "
+         "lobe "
+         "diffuse --wo 20,0 --interactive -o win.svg 2>&1 >made; }",
+         2);
     assert_has(output, "bsdf-plot: --interactive: ");
     assert_ptr_equal(strchr(output, '\n'), output + strlen(output) - 1);
     assert_whole("win.svg");
@@ -638,5 +638,6 @@ int main(void)
         { "a spec is changed in one setting",
           a_spec_is_changed_in_one_setting },
     };
-    return cmocka_run_group_tests_name("figures", tests, setup_files, teardown);
+    return cmocka_run_group_tests_name("figures", tests, setup_files,
+                                       shell_teardown);
 }

@@ -17,34 +17,6 @@
 #include "tests/close.h"
 #include "tests/shell.h"
 
-/* -- a folder for each run ------------------------------------------------- */
-
-static char folder[] = "/tmp/test_film.XXXXXX";
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    char command[64];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    return shell(command, command, sizeof command);
-}
-
-/* Overwritten by the next call but one. */
-static const char *in_folder(const char *name)
-{
-    static char paths[2][64];
-    static int next;
-    next = !next;
-    snprintf(paths[next], sizeof paths[next], "%s/%s", folder, name);
-    return paths[next];
-}
-
 struct bytes {
     unsigned char *data;
     size_t size;
@@ -186,9 +158,8 @@ static void the_sizes_of_films_are_bounded(void **state)
 static void a_kill_leaves_the_old_or_the_new(void **state)
 {
     struct film *a = random_film(120, 90, 5), *b = random_film(120, 90, 6);
-    char path[64];
     (void)state;
-    snprintf(path, sizeof path, "%s/killed.exr", folder);
+    const char *path = in_folder("killed.exr");
     write_or_fail(a, path);
     for (int i = 0; i < 25; i++) {
         const pid_t child = fork();
@@ -225,8 +196,7 @@ static void what_cannot_be_written_is_named(void **state)
     assert_false(film_write_exr(f, folder, NULL, &err));
     assert_has(err.text, folder);
 
-    char fifo[64];
-    snprintf(fifo, sizeof fifo, "%s/fifo", folder);
+    const char *fifo = in_folder("fifo");
     assert_int_equal(mkfifo(fifo, 0600), 0);
     const int fd = open(fifo, O_RDONLY | O_NONBLOCK);
     assert_false(film_write_exr(f, fifo, NULL, &err));
@@ -245,11 +215,10 @@ static void a_failure_leaves_what_was_there(void **state)
                                         { { longest, "x" } } };
     struct film *f = random_film(5, 5, 8);
     struct err err;
-    char path[64];
     (void)state;
     memset(longest, 'n', sizeof longest - 1);
     longest[sizeof longest - 1] = 0;
-    snprintf(path, sizeof path, "%s/old.exr", folder);
+    const char *path = in_folder("old.exr");
     write_or_fail(f, path);
     for (size_t i = 0; i < 3; i++) {
         assert_false(film_write_exr(f, path, bad[i], &err));
@@ -270,9 +239,8 @@ static void notes_may_be_empty_or_have_long_names(void **state)
     };
     struct film *f = random_film(5, 5, 8);
     struct err err = { "" };
-    char path[64];
     (void)state;
-    snprintf(path, sizeof path, "%s/notes.exr", folder);
+    const char *path = in_folder("notes.exr");
     if (!film_write_exr(f, path, odd, &err))
         fail_msg("%s", err.text);
     struct film *g = read_or_fail(path);
@@ -722,6 +690,12 @@ static void pngs_cannot_claim_more_than_they_hold(void **state)
     assert_has(err.text, "claims 30000 x 8000 pixels");
 }
 
+static int setup(void **state)
+{
+    (void)state;
+    return shell_setup("film", "");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -752,6 +726,5 @@ int main(void)
         { "PNGs cannot claim more than they hold",
           pngs_cannot_claim_more_than_they_hold },
     };
-    return cmocka_run_group_tests_name("film", tests, make_folder,
-                                       remove_folder);
+    return cmocka_run_group_tests_name("film", tests, setup, shell_teardown);
 }

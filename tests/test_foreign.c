@@ -2,7 +2,7 @@
  *
  * The plugins and adapters of tests/plugins are built with cc into a folder of
  * the test's own, $T; what crashes, hangs, lies or leaves there gets a verdict,
- * and nothing of it is left behind.  BIN has the programs, as in test_cli.
+ * and nothing of it is left behind.
  */
 #include <dirent.h>
 #include <errno.h>
@@ -18,26 +18,6 @@
 #include "tests/shell.h"
 #include "validate/foreign.h"
 #include "validate/pipe.h"
-
-enum { OUTPUT_MAX = 1 << 18 };
-
-static char folder[64], output[OUTPUT_MAX];
-
-/* As in test_cli: status and output of a shell command, both streams. */
-static int sh(const char *command)
-{
-    char line[4096];
-    snprintf(line, sizeof line, "exec 2>&1 </dev/null; cd $T; %s", command);
-    return shell(line, output, OUTPUT_MAX);
-}
-
-static void does(const char *command, int expected)
-{
-    const int status = sh(command);
-    if (status != expected)
-        fail_msg("%s: status %d, expected %d: %s", command, status, expected,
-                 output);
-}
 
 /* Whether a process has this test's $T in its environment, as all that it
  * starts has, and nothing else. */
@@ -74,13 +54,8 @@ static void nothing_is_left(void)
 static int setup(void **state)
 {
     (void)state;
-    static char bin[4096];
-    char *root = realpath(".", NULL);
-    unsetenv("BSDF_PLUGIN_HOST");
-    if (!root || shell_setup("foreign", bin, folder) != 0)
+    if (shell_setup("foreign", "exec 2>&1; cd $T; ") != 0)
         return -1;
-    setenv("ROOT", root, 1);
-    free(root);
     setenv("AWK",
            sh("awk -W version | grep -q ^mawk") == 0 ? "awk -W interactive"
                                                      : "awk",
@@ -91,12 +66,6 @@ static int setup(void **state)
               "build later.so -DABI=7 $p/ggx.c && "
               "echo 'int x;' >x.c && build empty.so x.c && "
               "echo text >text.so && cp $p/diffuse.awk .");
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    return sh("rm -rf \"$T\"");
 }
 
 /* A model with $T before "ggx.so...". */
@@ -202,15 +171,14 @@ static void a_plugin_gives_the_values_of_the_model_it_is(void **state)
 static void a_plugin_is_judged_as_the_model_it_is(void **state)
 {
     (void)state;
-    does("for s in ./ggx.so:alpha=0.3 "
-         "roughconductor:alpha=0.3,distribution=ggx; do "
-         "bsdf-validate $s --samples 1e4 --wo 40,10 -v >$T/out || exit 1; "
-         "sed -n '/^  check/,/^$/p' $T/out | "
-         "awk '/pass/ && !/furnace|answers/ {print $1, $2}' >$T/rows; "
-         "[ ! -e $T/first ] && mv $T/rows $T/first; done; "
-         "cmp $T/first $T/rows && grep -c chi2 $T/rows",
-         0);
-    assert_string_equal(output, "1\n");
+    prints("for s in ./ggx.so:alpha=0.3 "
+           "roughconductor:alpha=0.3,distribution=ggx; do "
+           "bsdf-validate $s --samples 1e4 --wo 40,10 -v >$T/out || exit 1; "
+           "sed -n '/^  check/,/^$/p' $T/out | "
+           "awk '/pass/ && !/furnace|answers/ {print $1, $2}' >$T/rows; "
+           "[ ! -e $T/first ] && mv $T/rows $T/first; done; "
+           "cmp $T/first $T/rows && grep -c chi2 $T/rows",
+           "1\n");
     nothing_is_left();
 }
 
@@ -218,8 +186,7 @@ static void text_from_awk_is_sound(void **state)
 {
     (void)state;
     does("bsdf-validate \"pipe:$AWK -f $T/diffuse.awk\" --samples 1000 "
-         "--wo 40,10",
-         0);
+         "--wo 40,10");
     assert_has(output, "passed, 0 failed");
     nothing_is_left();
 }
@@ -286,9 +253,8 @@ static void light_from_wo_becomes_radiance(void **state)
     bsdf_free(ours);
     bsdf_free(b);
     does("bsdf-validate ./glass.so:eta=1.5 --samples 1000 --wo 30,0 "
-         "--wo 150,0",
-         0);
-    does("bsdf-validate ./glass.so:eta=1.5,said=0 --samples 1000 --wo 30,0", 1);
+         "--wo 150,0");
+    ends("bsdf-validate ./glass.so:eta=1.5,said=0 --samples 1000 --wo 30,0", 1);
     assert_has(output, "energy       30,0         2.");
 }
 
@@ -309,8 +275,8 @@ static void the_cosine_and_the_precision_are_as_said(void **state)
     }
     assert_close(value[1], value[0] * wi.z, 1e-15);
     assert_close(value[2], value[0], 1e-15);
-    does("bsdf-validate ./ggx.so:fault=8 --samples 1000 --wo 40,0", 0);
-    does("bsdf-validate ./ggx.so:fault=7 --samples 1000 --wo 40,0 | "
+    does("bsdf-validate ./ggx.so:fault=8 --samples 1000 --wo 40,0");
+    ends("bsdf-validate ./ggx.so:fault=7 --samples 1000 --wo 40,0 | "
          "grep FAIL; exit 1",
          1);
     assert_has(output, "sample ");
@@ -328,7 +294,7 @@ static void a_students_metal_is_caught(void **state)
         print_message("skipped: no C++ compiler here\n");
         skip();
     }
-    does("${CXX:-c++} -std=c++11 -Wall -Wextra -Werror -O2 -shared -fPIC "
+    ends("${CXX:-c++} -std=c++11 -Wall -Wextra -Werror -O2 -shared -fPIC "
          "-I$ROOT -o student.so $ROOT/tests/plugins/student_microfacet.cpp && "
          "bsdf-validate ./student.so --nm 614,549,466 --samples 1000 "
          "--wo 85,0",
@@ -336,11 +302,10 @@ static void a_students_metal_is_caught(void **state)
     assert_has(output, "1.32784/1.14691/0.644822"); /* as by quadrature */
     assert_has(output, "masking with pi for sqrt(pi)");
     assert_has(output, "Fresnel at the wrong angle");
-    does("bsdf-validate ./student.so --samples 1000 --wo 85,0 | grep FAIL | "
-         "cut -c 3-14",
-         0);
-    assert_string_equal(output, "energy      \nreciprocity \n");
-    does("${CXX:-c++} -std=c++11 -DNO_PDF -shared -fPIC -I$ROOT -o nopdf.so "
+    prints("bsdf-validate ./student.so --samples 1000 --wo 85,0 | grep FAIL | "
+           "cut -c 3-14",
+           "energy      \nreciprocity \n");
+    ends("${CXX:-c++} -std=c++11 -DNO_PDF -shared -fPIC -I$ROOT -o nopdf.so "
          "$ROOT/tests/plugins/student_microfacet.cpp && "
          "bsdf-validate ./nopdf.so",
          2);
@@ -351,12 +316,10 @@ static void pictures_show_them_too(void **state)
 {
     (void)state;
     does("bsdf-plot lobe ./ggx.so:alpha=0.3 --wo 40,0 -o lobe.svg && "
-         "grep -c 'ggx.so:alpha=0.3' lobe.svg",
-         0);
+         "grep -c 'ggx.so:alpha=0.3' lobe.svg");
     does("bsdf-plot histogram \"pipe:bsdf-plugin-host $T/ggx.so alpha=0.2\" "
-         "--wo 40,0 --samples 1000 -o h.svg",
-         0);
-    does("bsdf-plot lobe ./ggx.so:fault=1 --wo 40,0 -o x.svg", 2);
+         "--wo 40,0 --samples 1000 -o h.svg");
+    ends("bsdf-plot lobe ./ggx.so:fault=1 --wo 40,0 -o x.svg", 2);
     assert_has(output, "killed by signal 11");
     nothing_is_left();
 }
@@ -397,18 +360,17 @@ static void each_misbehaviour_is_a_verdict(void **state)
                  "grep '^  answers.*FAIL' $T/out; "
                  "[ $(grep -c '^  energy.*pass' $T/out) = 1 ] && exit $s",
                  bad[i].spec);
-        does(command, 1);
+        ends(command, 1);
         assert_has(output, bad[i].said);
         assert_has(output, "30,10");
         nothing_is_left();
     }
-    does("bsdf-validate ./ggx.so:fault=5,at=0.9 diffuse --samples 1000 "
+    ends("bsdf-validate ./ggx.so:fault=5,at=0.9 diffuse --samples 1000 "
          "--wo 30,10",
          1);
     assert_has(output, "finite ");
     does("bsdf-validate ./ggx.so:fault=6,at=0.9999 --samples 1000 --wo 30,10 "
-         "2>$T/printed && grep -c wi.z $T/printed",
-         0);
+         "2>$T/printed && grep -c wi.z $T/printed");
 }
 
 static void what_cannot_be_made_says_why(void **state)
@@ -451,12 +413,12 @@ static void what_cannot_be_made_says_why(void **state)
         snprintf(command, sizeof command,
                  "bsdf-validate diffuse %s --samples 1000 --time-limit 0.2",
                  bad[i][0]);
-        does(command, 2);
+        ends(command, 2);
         assert_has(output, bad[i][1]);
     }
-    does("BSDF_PLUGIN_HOST=/none bsdf-validate ./ggx.so", 2);
+    ends("BSDF_PLUGIN_HOST=/none bsdf-validate ./ggx.so", 2);
     assert_has(output, "/none cannot be started");
-    does("bsdf-plugin-host ./ggx.so", 2);
+    ends("bsdf-plugin-host ./ggx.so", 2);
     assert_has(output, "handshake");
     nothing_is_left();
 }
@@ -600,7 +562,7 @@ static void nobody_outlives_the_program(void **state)
                      "--time-limit 60 & sleep 0.7; kill -%s $! && wait $!; "
                      "[ $? -gt 128 ]",
                      fault, name[i]);
-            does(command, 0);
+            does(command);
             nothing_is_left();
         }
 }
@@ -629,5 +591,5 @@ int main(void)
         { "threads share an instance", threads_share_an_instance },
         { "nobody outlives the program", nobody_outlives_the_program },
     };
-    return cmocka_run_group_tests_name("foreign", tests, setup, teardown);
+    return cmocka_run_group_tests_name("foreign", tests, setup, shell_teardown);
 }

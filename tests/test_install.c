@@ -11,57 +11,22 @@
 #include "tests/close.h"
 #include "tests/shell.h"
 
-enum { OUTPUT_MAX = 1 << 16 };
-
-static char folder[64], output[OUTPUT_MAX];
-
-/* Runs a shell command, with the test's own folder as $T and the root of the
- * repository as $ROOT; its exit status, or -1 if it was killed; output has what
- * it printed on either stream. */
-static int sh(const char *command)
-{
-    char line[2048];
-    snprintf(line, sizeof line, "exec 2>&1; %s", command);
-    return shell(line, output, OUTPUT_MAX);
-}
-
-static void does(const char *command)
-{
-    const int status = sh(command);
-    if (status != 0)
-        fail_msg("%s: status %d: %s", command, status, output);
-}
-
-static void prints(const char *command, const char *expected)
-{
-    does(command);
-    assert_string_equal(output, expected);
-}
-
 /* The settings of the make that runs this test are not those of the one that
- * installs: a library with sanitizers would not link by itself. */
+ * installs: a library with sanitizers would not link by itself.  The programs
+ * that were built are not in PATH. */
 static int setup(void **state)
 {
     (void)state;
+    if (shell_setup("install", "exec 2>&1; PATH=${PATH#*:}; ") != 0)
+        return -1;
     static const char *const settings[] = {
         "MAKEFLAGS", "MFLAGS", "MAKELEVEL", "MAKEOVERRIDES",
-        "config",    "PREFIX", "DESTDIR",   "BSDF_IOR_PATH",
-        "BSDF_DATA", "WRAP",   "BIN",       "LD_PRELOAD"
+        "config",    "PREFIX", "DESTDIR",   "BSDF_DATA",
+        "WRAP",      "BIN",    "LD_PRELOAD"
     };
     for (size_t i = 0; i < sizeof settings / sizeof *settings; i++)
         unsetenv(settings[i]);
-    char *root = realpath(".", NULL);
-    strcpy(folder, "/tmp/bsdf-install-XXXXXX");
-    const bool good = root && mkdtemp(folder) && !setenv("ROOT", root, 1) &&
-                      !setenv("T", folder, 1);
-    free(root);
-    return good ? 0 : -1;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    return sh("rm -rf \"$T\"");
+    return 0;
 }
 
 static void install_fills_a_prefix(void **state)
@@ -106,9 +71,9 @@ static void manuals_and_completion_come_along(void **state)
 static void relative_prefixes_are_refused(void **state)
 {
     (void)state;
-    assert_int_equal(sh("make install PREFIX=usr STAGE=$T/none"), 2);
+    ends("make install PREFIX=usr STAGE=$T/none", 2);
     assert_has(output, "absolute");
-    assert_int_equal(sh("make uninstall PREFIX='/a b'"), 2);
+    ends("make uninstall PREFIX='/a b'", 2);
     assert_has(output, "spaces");
 }
 
@@ -162,9 +127,7 @@ static void pkg_config_and_a_plain_cc_make_a_program(void **state)
         print_message("no pkg-config here, so nothing to ask it\n");
         skip();
     }
-    char path[128];
-    snprintf(path, sizeof path, "%s/user.c", folder);
-    FILE *f = fopen(path, "w");
+    FILE *f = fopen(in_folder("user.c"), "w");
     assert_non_null(f);
     fputs(user, f);
     fclose(f);
@@ -266,5 +229,5 @@ int main(void)
         { "uninstall takes what is ours alone",
           uninstall_takes_what_is_ours_alone },
     };
-    return cmocka_run_group_tests_name("install", tests, setup, teardown);
+    return cmocka_run_group_tests_name("install", tests, setup, shell_teardown);
 }

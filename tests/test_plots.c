@@ -109,12 +109,9 @@ static void names_and_specs_are_nothing_but_text(void **state)
 static void without_gnuplot_the_table_and_the_script_are_made(void **state)
 {
     (void)state;
-    char line[8192];
-    snprintf(line, sizeof line,
-             "mkdir $T/none && cd $T/none && { PATH=/nonexistent %s/bsdf-plot "
-             "lobe diffuse --wo 10,0 -o x.svg 2>&1 >$T/made; }",
-             bin);
-    assert_int_equal(sh(line), 2);
+    ends("mkdir $T/none && cd $T/none && { PATH=/nonexistent $BIN/bsdf-plot "
+         "lobe diffuse --wo 10,0 -o x.svg 2>&1 >$T/made; }",
+         2);
     assert_has(output, "gnuplot");
     assert_has(output, "PATH");
     quiet("cd $T; printf 'x.tsv\\nx.gp\\nx.caption\\n' | cmp - made; cd none; "
@@ -128,9 +125,9 @@ static void gnuplots_own_words_are_passed_on(void **state)
     (void)state;
     quiet("mkdir $T/fake; cd $T/fake; printf '#!/bin/sh\\necho its words >&2\\n"
           "exit 3\\n' >gnuplot; chmod +x gnuplot");
-    assert_int_equal(sh("cd $T/fake; { PATH=$PWD:$PATH bsdf-plot lobe diffuse "
-                        "--wo 10,0; } 2>&1 >/dev/null"),
-                     2);
+    ends("cd $T/fake; { PATH=$PWD:$PATH bsdf-plot lobe diffuse --wo 10,0; } "
+         "2>&1 >/dev/null",
+         2);
     assert_has(output, "its words");
     assert_has(output, "status 3");
     quiet("cd $T/fake; [ ! -e lobe.svg ]; [ -s lobe.gp ]; rm -r $T/fake");
@@ -183,9 +180,9 @@ static void wrong_requests_are_refused(void **state)
 static void a_script_in_the_way_leaves_nothing(void **state)
 {
     (void)state;
-    assert_int_equal(sh("mkdir -p $T/way/x.gp/y && cd $T/way && { bsdf-plot "
-                        "lobe diffuse --wo 10,0 -o x.svg 2>&1 >$T/out; }"),
-                     2);
+    ends("mkdir -p $T/way/x.gp/y && cd $T/way && { bsdf-plot lobe diffuse --wo "
+         "10,0 -o x.svg 2>&1 >$T/out; }",
+         2);
     assert_has(output, "x.gp");
     quiet("cd $T/way; rm -r x.gp; [ -z \"$(ls)\" ]; rmdir $T/way");
 }
@@ -217,7 +214,7 @@ static void what_is_read_is_never_replaced(void **state)
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         snprintf(line, sizeof line, "cd $T/read; bsdf-plot %s 2>&1",
                  wrong[i][0]);
-        assert_int_equal(sh(line), 2);
+        ends(line, 2);
         assert_has(output, wrong[i][1]);
         assert_has(output, wrong[i][2]);
         assert_has(output, "-o with another name");
@@ -401,14 +398,12 @@ static void bands_are_named_as_they_are(void **state)
 static void a_colour_that_is_not_quite_met_is_warned_of(void **state)
 {
     (void)state;
-    assert_int_equal(sh("cd $T; bsdf-plot lobe roughconductor:material=Au "
-                        "--wo 45,0 -o gold.svg 2>&1 >gold.out"),
-                     0);
+    does("cd $T; bsdf-plot lobe roughconductor:material=Au --wo 45,0 -o "
+         "gold.svg 2>&1 >gold.out");
     assert_has(output, "bsdf-plot: warning: ");
     assert_has(output, "F0");
     assert_whole("gold.svg");
-    assert_int_equal(sh("cd $T; bsdf-plot ior Au -o gold.svg 2>&1 >gold.out"),
-                     0);
+    does("cd $T; bsdf-plot ior Au -o gold.svg 2>&1 >gold.out");
     assert_has(output, "bsdf-plot: warning: ");
 }
 
@@ -591,19 +586,18 @@ static void a_page_is_cited_and_its_bands_are_marked(void **state)
 static void a_string_of_a_script_is_what_it_was(void **state)
 {
     (void)state;
-    char text[300], path[512];
+    char text[300];
     size_t n = 0;
     for (int c = 1; c < 128; c++)
         text[n++] = (char)c;
     snprintf(text + n, sizeof text - n, "$1 \"7\" `8` '9' \\0 ω€");
-    snprintf(path, sizeof path, "%s/string.gp", folder);
-    FILE *script = fopen(path, "w");
+    FILE *script = fopen(in_folder("string.gp"), "w");
     assert_non_null(script);
     fputs("set print \"-\"\nprint ", script);
     gnuplot_string(script, text);
     fputc('\n', script);
     fclose(script);
-    assert_int_equal(sh("gnuplot -d $T/string.gp"), 0);
+    does("gnuplot -d $T/string.gp");
     n = strlen(output);
     assert_true(n > 0);
     output[n - 1] = '\0';
@@ -701,5 +695,5 @@ int main(void)
         { "plain text is one line of UTF-8", plain_text_is_one_line_of_utf8 },
         { "axes are easy to read", axes_are_easy_to_read },
     };
-    return cmocka_run_group_tests_name("plots", tests, setup, teardown);
+    return cmocka_run_group_tests_name("plots", tests, setup, shell_teardown);
 }

@@ -1,20 +1,13 @@
 /* test_render.c - bsdf-render as a user meets it
  *
- * The programs are in the folder that BIN names, build/bin by default.  Scenes
- * are those of data/scenes, and one of the test's own; pictures of the course's
- * are compared where BSDF_SHARED (../shared) has them.
+ * Scenes are those of data/scenes, and one of the test's own; pictures of the
+ * course's are compared where BSDF_SHARED (../shared) has them.
  */
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "tests/close.h"
 #include "tests/shell.h"
-
-enum { OUTPUT_MAX = 1 << 16 };
-
-static char folder[64], output[OUTPUT_MAX];
 
 /* A lamp above a floor, beside a ball of rough silver. */
 static const char scene[] =
@@ -41,62 +34,31 @@ static const char scene[] =
     "<float name='alpha' value='0.3'/></bsdf></shape>\n"
     "</scene>\n";
 
-static int sh(const char *command)
-{
-    return shell(command, output, OUTPUT_MAX);
-}
-
-static void does(const char *command)
-{
-    const int status = sh(command);
-    if (status != 0)
-        print_error("%s: status %d: %s\n", command, status, output);
-    assert_int_equal(status, 0);
-}
-
-/* Status 2, and one line on standard error with both parts. */
+/* Arguments, with the files of $T, that are refused. */
 static void not_told(const char *arguments, const char *a, const char *b)
 {
-    char line[1024];
-    snprintf(line, sizeof line, "cd $T && bsdf-render %s 2>&1 </dev/null",
-             arguments);
-    const int status = sh(line);
-    if (status != 2)
-        print_error("%s: status %d: %s\n", arguments, status, output);
-    assert_int_equal(status, 2);
-    assert_has(output, a);
-    assert_has(output, b);
-    const char *end = strchr(output, '\n');
-    if (!end || end[1] != '\0')
-        print_error("%s: more than a line: %s\n", arguments, output);
-    assert_true(end && end[1] == '\0');
+    char line[2048];
+    snprintf(line, sizeof line, "cd $T && bsdf-render %s", arguments);
+    refused(line, a, b);
 }
 
 /* The same, and no picture. */
-static void refused(const char *arguments, const char *a, const char *b)
+static void not_made(const char *arguments, const char *a, const char *b)
 {
     char with[1024];
     snprintf(with, sizeof with, "-f no.png %s", arguments);
-    assert_int_equal(sh("rm -f $T/no.png"), 0);
+    does("rm -f $T/no.png");
     not_told(with, a, b);
-    assert_int_equal(sh("test -e $T/no.png"), 1);
+    ends("test -e $T/no.png", 1);
 }
 
 static int setup(void **state)
 {
-    char bin[4096], text[8192];
     (void)state;
-    if (shell_setup("render", bin, folder) != 0)
+    if (shell_setup("render", "") != 0)
         return -1;
-    snprintf(text, sizeof text, "%s/a.xml", folder);
-    FILE *out = fopen(text, "w");
+    FILE *out = fopen(in_folder("a.xml"), "w");
     return !out || fputs(scene, out) < 0 || fclose(out) != 0;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    return sh("rm -rf \"$T\"");
 }
 
 static void writes_pictures(void **state)
@@ -110,8 +72,7 @@ static void writes_pictures(void **state)
     assert_has(output, "60 x 40 pixels");
     assert_has(output, "samples 4, depth 3,");
     assert_has(output, "mean luminance 0.");
-    does("cd $T && bsdf-render --quiet a.xml 2>&1");
-    assert_string_equal(output, "a.png\n");
+    prints("cd $T && bsdf-render --quiet a.xml 2>&1", "a.png\n");
 }
 
 static void says_how_a_picture_was_made(void **state)
@@ -172,14 +133,12 @@ static void compares(void **state)
     does("cd $T && bsdf-render --quiet -s 64 -r 180 120 a.xml -f a.exr && "
          "bsdf-render --quiet -s 64 -r 180 120 --seed 2 a.xml -f b.exr && "
          "bsdf-render --quiet -s 64 -r 180 120 -D radius=0.32 a.xml -f c.exr");
-    assert_int_equal(sh("cd $T && bsdf-render --compare a.exr b.exr"), 0);
+    does("cd $T && bsdf-render --compare a.exr b.exr");
     print_message("%s", output);
-    assert_int_equal(
-        sh("cd $T && bsdf-render --compare a.exr c.exr --map z.png"), 1);
+    ends("cd $T && bsdf-render --compare a.exr c.exr --map z.png", 1);
     print_message("%s", output);
-    assert_int_equal(sh("test -s $T/z.png"), 0);
-    assert_int_equal(sh("cd $T && bsdf-render --compare a.exr c.exr --numbers"),
-                     1);
+    does("test -s $T/z.png");
+    ends("cd $T && bsdf-render --compare a.exr c.exr --numbers", 1);
     assert_has(output, "same\t0\n");
     assert_has(output, "variance_ratio\t");
     does("cd $T && bsdf-render --quiet -s 64 a.xml -f a.png && bsdf-render "
@@ -244,35 +203,36 @@ static void adaptive_counts(void **state)
 static void wrong_requests(void **state)
 {
     (void)state;
-    refused("", "SCENE", "data/scenes");
-    refused("a.xml b.xml", "b.xml", "one argument too many");
-    refused("missing.xml", "missing.xml", "No such file");
-    refused("a.xml -f b.jpg", "b.jpg", ".png or .exr");
-    refused("a.xml -s 0", "-s 0", "[1, 4294967295]");
-    refused("a.xml -m -1", "-m -1", "whole number");
-    refused("a.xml -m 1.5", "-m 1.5", "whole number");
-    refused("a.xml -r 0 5", "-r W 0", "whole number");
-    refused("a.xml -r 7", "-r W H", "missing");
-    refused("a.xml -a 8", "-a BATCH TOL", "missing");
-    refused("a.xml -a 8 -1", "-a TOL -1", "[1e-09, ");
-    refused("a.xml -a 8 0", "-a TOL 0", "[1e-09, ");
-    refused("a.xml -o 2", "-o 2", "[0, 1]");
-    refused("a.xml -p 50 0 20 5", "20 x 5 at 50, 0", "60 x 40");
-    refused("a.xml -b 0.1", "lens radius 0.1", "focal distance");
-    refused("a.xml -m 2 --only-bounce 3", "--only-bounce 3", "after 2 bounces");
-    refused("a.xml -o 0 --only-bounce 1", "-o 0", "--only-bounce 1");
-    refused("a.xml --nm 500,600", "--nm", "expected three");
-    refused("a.xml -D radius=", "a.xml", "it is empty");
-    refused("a.xml -c a.xml", "a.xml", "number 1");
-    refused("a.xml -e a.xml", "a.xml", "EXR");
-    refused("a.xml --direct mix", "mix", "mis");
-    refused("a.xml --sampling cosin", "cosin", "cosine");
-    refused("a.xml --sampler sobol", "sobol", "ldsampler");
-    refused("a.xml --compat corse", "corse", "course");
-    refused("a.xml -D radius", "radius", "NAME=VALUE");
-    refused("a.xml -D radius=wide", "a.xml", "wide");
-    refused("--compare a.xml", "nothing is rendered", "--compare");
-    refused("--measure a.xml", "nothing is rendered", "--measure");
+    not_made("", "SCENE", "data/scenes");
+    not_made("a.xml b.xml", "b.xml", "one argument too many");
+    not_made("missing.xml", "missing.xml", "No such file");
+    not_made("a.xml -f b.jpg", "b.jpg", ".png or .exr");
+    not_made("a.xml -s 0", "-s 0", "[1, 4294967295]");
+    not_made("a.xml -m -1", "-m -1", "whole number");
+    not_made("a.xml -m 1.5", "-m 1.5", "whole number");
+    not_made("a.xml -r 0 5", "-r W 0", "whole number");
+    not_made("a.xml -r 7", "-r W H", "missing");
+    not_made("a.xml -a 8", "-a BATCH TOL", "missing");
+    not_made("a.xml -a 8 -1", "-a TOL -1", "[1e-09, ");
+    not_made("a.xml -a 8 0", "-a TOL 0", "[1e-09, ");
+    not_made("a.xml -o 2", "-o 2", "[0, 1]");
+    not_made("a.xml -p 50 0 20 5", "20 x 5 at 50, 0", "60 x 40");
+    not_made("a.xml -b 0.1", "lens radius 0.1", "focal distance");
+    not_made("a.xml -m 2 --only-bounce 3", "--only-bounce 3",
+             "after 2 bounces");
+    not_made("a.xml -o 0 --only-bounce 1", "-o 0", "--only-bounce 1");
+    not_made("a.xml --nm 500,600", "--nm", "expected three");
+    not_made("a.xml -D radius=", "a.xml", "it is empty");
+    not_made("a.xml -c a.xml", "a.xml", "number 1");
+    not_made("a.xml -e a.xml", "a.xml", "EXR");
+    not_made("a.xml --direct mix", "mix", "mis");
+    not_made("a.xml --sampling cosin", "cosin", "cosine");
+    not_made("a.xml --sampler sobol", "sobol", "ldsampler");
+    not_made("a.xml --compat corse", "corse", "course");
+    not_made("a.xml -D radius", "radius", "NAME=VALUE");
+    not_made("a.xml -D radius=wide", "a.xml", "wide");
+    not_made("--compare a.xml", "nothing is rendered", "--compare");
+    not_made("--measure a.xml", "nothing is rendered", "--measure");
     not_told("--compare a.xml", "--compare", "two pictures");
     not_told("--compare a.xml a.xml", "a.xml", "EXR");
     not_told("--compare few.exr few.exr --map z.exr", "--map z.exr", ".png");
@@ -281,7 +241,7 @@ static void wrong_requests(void **state)
     not_told("--measure few.exr b.exr", "--measure", "one picture");
     not_told("--measure a.xml", "a.xml", "");
     not_told("--measure few.exr -p 500 0 1 1", "-p 500 0", "60 x 40");
-    refused("a.xml -f /dev/full/x.png", "/dev/full/x.png", "Not a directory");
+    not_made("a.xml -f /dev/full/x.png", "/dev/full/x.png", "Not a directory");
 }
 
 /* A picture that was there stays, or the new one is whole. */
@@ -368,5 +328,5 @@ int main(void)
         { "the course's camera files are read", cameras_of_the_course },
         { "the course's pictures are made again", the_courses_pictures },
     };
-    return cmocka_run_group_tests_name("render", tests, setup, teardown);
+    return cmocka_run_group_tests_name("render", tests, setup, shell_teardown);
 }

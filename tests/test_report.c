@@ -1,14 +1,12 @@
 /* test_report.c - reports that are whole, follow their schema, and replay
  *
- * The programs are in the folder that BIN names, build/bin by default; the test
- * runs in the root of the repository and writes only into a folder of its own.
+ * The test runs in the root of the repository and writes only into $T.
  */
 #include <jansson.h>
 #include <libxml/parser.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "tests/broken.h"
 #include "tests/close.h"
@@ -17,43 +15,10 @@
 #include "validate/replay.h"
 #include "validate/report.h"
 
-enum { OUTPUT_MAX = 1 << 16 };
-
-static char folder[64], output[OUTPUT_MAX], path[128];
-
-/* Runs a shell command with the programs in PATH and the test's own folder as
- * $T; its exit status, or -1 if it was killed; output has what it printed. */
-static int sh(const char *command)
-{
-    return shell(command, output, OUTPUT_MAX);
-}
-
-/* Status 2, and both parts on standard error. */
-static void refused(const char *command, const char *a, const char *b)
-{
-    char line[2048];
-    snprintf(line, sizeof line, "{ %s; } 2>&1 >$T/printed </dev/null", command);
-    const int status = sh(line);
-    if (status != 2)
-        print_error("%s: status %d: %s\n", command, status, output);
-    assert_int_equal(status, 2);
-    assert_has(output, a);
-    assert_has(output, b);
-}
-
-/* The path of a file of the test's, until it is asked for another. */
-static const char *in_folder(const char *name)
-{
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
 static int setup(void **state)
 {
     (void)state;
-    char bin[4096];
-    unsetenv("BSDF_IOR_PATH");
-    if (shell_setup("report", bin, folder) != 0)
+    if (shell_setup("report", "") != 0)
         return -1;
     /* Sound, failing, not applicable; and a name that is no text. */
     return sh("cp data/ior/Ca/Mathewson.yml \"$T/$(printf '\\377<&').yml\" && "
@@ -65,12 +30,6 @@ static int setup(void **state)
               "bsdf-validate \"roughconductor:material='$(printf "
               "'\\377<&').yml'\" --wo 40,10 --samples 1e4 --json odd.json "
               "--junit odd.xml >odd.txt");
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    return sh("rm -rf \"$T\"");
 }
 
 /* -- the schema ------------------------------------------------------------ */
@@ -262,7 +221,7 @@ static void what_is_no_number_or_text_is_there_all_the_same(void **state)
     if (!report_junit(in_folder("nan.xml"), &run, &err))
         fail_msg("%s", err.text);
     assert_xml(in_folder("nan.xml"), "a \\xff ]]> & \\x01 \\x0a <b> note");
-    assert_int_equal(sh("cd $T && bsdf-plot report nan.json -o nan.html"), 0);
+    does("cd $T && bsdf-plot report nan.json -o nan.html");
     assert_xml(in_folder("nan.html"), "not finite");
     assert_xml(in_folder("nan.html"), "half a letter: \\xc3");
     run_clear(&run);
@@ -279,7 +238,7 @@ static void names_that_are_no_text_are_shown_and_not_replayed(void **state)
     assert_true(json_is_true(json_object_get(one, "repaired")));
     json_decref(root);
     assert_xml(in_folder("odd.xml"), NULL);
-    assert_int_equal(sh("grep -c 'name=.*.xff&lt;&amp;.yml' $T/odd.xml"), 0);
+    does("grep -c 'name=.*.xff&lt;&amp;.yml' $T/odd.xml");
     refused("cd $T && bsdf-validate --replay odd.json", "results[0].spec",
             "cannot be made again");
 }
@@ -287,14 +246,11 @@ static void names_that_are_no_text_are_shown_and_not_replayed(void **state)
 static void the_same_run_gives_the_same_bytes(void **state)
 {
     (void)state;
-    assert_int_equal(
-        sh("mkdir $T/again && cd $T/again && bsdf-validate diffuse mirror "
-           "--samples 1e4 --skip chi2 --json sound.json --junit sound.xml "
-           "--threads 1 >sound.txt; cmp sound.xml ../sound.xml && "
-           "cmp sound.txt ../sound.txt && for f in . ..; do "
-           "sed -n '/\"seed\"/,$p' $f/sound.json >$f/cut; done; "
-           "cmp cut ../cut"),
-        0);
+    does("mkdir $T/again && cd $T/again && bsdf-validate diffuse mirror "
+         "--samples 1e4 --skip chi2 --json sound.json --junit sound.xml "
+         "--threads 1 >sound.txt; cmp sound.xml ../sound.xml && cmp sound.txt "
+         "../sound.txt && for f in . ..; do sed -n '/\"seed\"/,$p' "
+         "$f/sound.json >$f/cut; done; cmp cut ../cut");
 }
 
 /* -- JUnit ----------------------------------------------------------------- */
@@ -340,11 +296,9 @@ static void junit_counts_what_it_holds(void **state)
     assert_true(failures > 0 && skipped > 0);
     xmlFreeDoc(doc);
     json_decref(root);
-    assert_int_equal(sh("grep -m 1 -o 'message=\"value [0-9.]*[^\"]*limit' "
-                        "$T/fails.xml"),
-                     0);
+    does("grep -m 1 -o 'message=\"value [0-9.]*[^\"]*limit' $T/fails.xml");
     if (sh("command -v xmllint") == 0)
-        assert_int_equal(sh("xmllint --noout $T/*.xml"), 0);
+        does("xmllint --noout $T/*.xml");
     else
         print_message("no xmllint here\n");
 }
@@ -369,25 +323,18 @@ static void assert_same(const char *file)
 static void a_replay_gives_the_same_verdicts(void **state)
 {
     (void)state;
-    assert_int_equal(sh("cd $T && bsdf-validate --replay sound.json --json "
-                        "sound2.json"),
-                     0);
+    does("cd $T && bsdf-validate --replay sound.json --json sound2.json");
     assert_same("sound.json");
-    assert_int_equal(sh("cd $T && bsdf-validate --replay fails.json"), 1);
+    ends("cd $T && bsdf-validate --replay fails.json", 1);
     assert_same("fails.json");
     assert_has(output, "\ncourse_microfacet\n");
     assert_null(strstr(output, "\ndiffuse\n"));
-    assert_int_equal(sh("cd $T && bsdf-validate --replay fails.json --spec 3"),
-                     0);
+    does("cd $T && bsdf-validate --replay fails.json --spec 3");
     assert_has(output, "replayed: the same ");
-    assert_int_equal(
-        sh("cd $T && bsdf-validate --replay fails.json --spec diffuse"), 0);
-    assert_int_equal(sh("cd $T && bsdf-validate --replay fails.json --spec 1"),
-                     1);
-    assert_int_equal(sh("cd $T && for f in sound sound2; do sed -n "
-                        "'/\"seed\"/,$p' $f.json >$f.cut; done; cmp "
-                        "sound.cut sound2.cut"),
-                     0);
+    does("cd $T && bsdf-validate --replay fails.json --spec diffuse");
+    ends("cd $T && bsdf-validate --replay fails.json --spec 1", 1);
+    does("cd $T && for f in sound sound2; do sed -n '/\"seed\"/,$p' $f.json "
+         ">$f.cut; done; cmp sound.cut sound2.cut");
 }
 
 static void a_replay_names_what_is_different(void **state)
@@ -397,7 +344,7 @@ static void a_replay_names_what_is_different(void **state)
     json_t *v = first_verdict(root);
     json_object_set_new(v, "limit", json_real(0.25));
     assert_int_equal(json_dump_file(root, in_folder("other.json"), 0), 0);
-    refused("bsdf-validate --replay $T/other.json",
+    refused("bsdf-validate --replay $T/other.json >$T/said",
             "results[0].verdicts[0] (finite).limit was 0.25, and is now 0.0",
             "other.json");
     json_t *verdicts = json_object_get(
@@ -410,10 +357,9 @@ static void a_replay_names_what_is_different(void **state)
     snprintf(changed, sizeof changed,
              "the number of results[0].verdicts was %zu, and is now %zu", last,
              last + 1);
-    refused("bsdf-validate --replay $T/other.json", changed, "");
+    refused("bsdf-validate --replay $T/other.json >$T/said", changed, "");
     /* another model does not matter to this one */
-    assert_int_equal(sh("bsdf-validate --replay $T/other.json --spec mirror"),
-                     0);
+    does("bsdf-validate --replay $T/other.json --spec mirror");
     json_decref(root);
 }
 
@@ -430,8 +376,9 @@ static void wrong_requests_are_refused(void **state)
     refused("bsdf-validate --replay $T/sound.json --spec matt", "\"matt\"",
             "a spec of the report");
     refused("bsdf-validate diffuse --spec 1", "--spec", "--replay FILE");
-    refused("bsdf-validate diffuse --samples 1e3 --junit $T/none/x.xml",
-            "none/x.xml", "");
+    refused(
+        "bsdf-validate diffuse --samples 1e3 --junit $T/none/x.xml >$T/said",
+        "none/x.xml", "");
     refused("bsdf-plot report $T/none.json -o $T/x.html", "none.json",
             "No such file");
     refused("bsdf-plot report $T/sound.json -o $T/x.svg", "x.svg", ".html");
@@ -446,7 +393,7 @@ static void malformed(const char *bytes, size_t n, const char *has)
     assert_non_null(f);
     assert_int_equal(fwrite(bytes, 1, n, f), n);
     fclose(f);
-    assert_false(recorded_read(&r, path, &err));
+    assert_false(recorded_read(&r, in_folder("bad.json"), &err));
     assert_has(err.text, "bad.json");
     assert_has(err.text, has);
 }
@@ -472,7 +419,7 @@ static void spoil(json_t *root, json_t *object, const char *above)
             json_object_set_new(object, key,
                                 json_loads(other[i], JSON_DECODE_ANY, NULL));
             assert_int_equal(json_dump_file(root, in_folder("bad.json"), 0), 0);
-            if (recorded_read(&r, path, &err))
+            if (recorded_read(&r, in_folder("bad.json"), &err))
                 recorded_clear(&r);
             else
                 assert_has(err.text, "expected");
@@ -508,7 +455,7 @@ static void malformed_reports_are_refused(void **state)
         assert_non_null(f);
         fwrite(copy, 1, n, f);
         fclose(f);
-        if (recorded_read(&r, path, &err))
+        if (recorded_read(&r, in_folder("bad.json"), &err))
             recorded_clear(&r);
         free(copy);
     }
@@ -547,11 +494,10 @@ static void malformed_reports_are_refused(void **state)
 static void a_page_needs_nothing_but_itself(void **state)
 {
     (void)state;
-    assert_int_equal(sh("cd $T && bsdf-plot report sound.json -o sound.html && "
-                        "bsdf-plot report fails.json -o fails.html && "
-                        "bsdf-plot report odd.json -o odd.html && ls -A $T | "
-                        "grep -c bsdf-plot-"),
-                     1);
+    ends("cd $T && bsdf-plot report sound.json -o sound.html && bsdf-plot "
+         "report fails.json -o fails.html && bsdf-plot report odd.json -o "
+         "odd.html && ls -A $T | grep -c bsdf-plot-",
+         1);
     assert_has(output, "sound.html\nfails.html\nodd.html\n");
     assert_xml(in_folder("sound.html"), "Sound: ");
     assert_xml(in_folder("sound.html"), " verdicts passed, 0 failed, of 2 "
@@ -562,16 +508,15 @@ static void a_page_needs_nothing_but_itself(void **state)
     assert_xml(in_folder("fails.html"), "only delta lobes");
     assert_xml(in_folder("fails.html"), "--nm 614,549");
     /* names of namespaces alone */
-    assert_int_equal(sh("cat $T/*.html | grep -o 'http[^\"]*' | sort -u | "
-                        "grep -v '^http://www.w3.org/'"),
-                     1);
-    assert_int_equal(sh("grep -E '<script|<link|src=|@import' $T/*.html"), 1);
-    assert_int_equal(sh("grep -o '<svg' $T/fails.html | wc -l"), 0);
+    ends("cat $T/*.html | grep -o 'http[^\"]*' | sort -u | grep -v "
+         "'^http://www.w3.org/'",
+         1);
+    ends("grep -E '<script|<link|src=|@import' $T/*.html", 1);
+    does("grep -o '<svg' $T/fails.html | wc -l");
     assert_int_equal(atoi(output), 3); /* a map and two lobes */
-    assert_int_equal(sh("grep -o \" id=['\\\"][^'\\\"]*\" $T/fails.html | tr "
-                        "\"'\" '\"' | sort | uniq -d | wc -l"),
-                     0);
-    assert_string_equal(output, "0\n");
+    prints("grep -o \" id=['\\\"][^'\\\"]*\" $T/fails.html | tr \"'\" '\"' | "
+           "sort | uniq -d | wc -l",
+           "0\n");
 }
 
 static void pictures_are_few_and_a_model_may_be_gone(void **state)
@@ -592,10 +537,10 @@ static void pictures_are_few_and_a_model_may_be_gone(void **state)
     json_decref(one);
     assert_int_equal(json_dump_file(root, in_folder("many.json"), 0), 0);
     json_decref(root);
-    assert_int_equal(sh("cd $T && bsdf-plot report many.json -o many.html"), 0);
+    does("cd $T && bsdf-plot report many.json -o many.html");
     assert_xml(in_folder("many.html"), "this model cannot be made again");
     assert_xml(in_folder("many.html"), "some for the first 6 models that fail");
-    assert_int_equal(sh("grep -o '<svg' $T/many.html | wc -l"), 0);
+    does("grep -o '<svg' $T/many.html | wc -l");
     assert_int_equal(atoi(output), 12);
 }
 
@@ -620,5 +565,5 @@ int main(void)
         { "pictures are few, and a model may be gone",
           pictures_are_few_and_a_model_may_be_gone },
     };
-    return cmocka_run_group_tests_name("report", tests, setup, teardown);
+    return cmocka_run_group_tests_name("report", tests, setup, shell_teardown);
 }
