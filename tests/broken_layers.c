@@ -40,10 +40,12 @@ enum {
     OTHER_SHARE,   /* b is drawn with w + size (1 - w) / 2 [19] */
     SQUARED,       /* w^2 in sampling and pdf: another choice, no fault [22] */
     PDF_NO_WEIGHT, /* the pdf lacks the share of b */
+    BY_FIRST,      /* the number that chooses goes on as the first: no fault */
 };
 static const char *const mix_faults[] = {
     "none",        "one_lobe",    "wrong_tested", "remap",         "no_weight",
-    "max_and_min", "other_share", "squared",      "pdf_no_weight", NULL
+    "max_and_min", "other_share", "squared",      "pdf_no_weight", "by_first",
+    NULL
 };
 
 #define FIELD(name) offsetof(struct mix, name)
@@ -135,9 +137,9 @@ static struct bsdf_sample mix_sample(const void *state, struct vec3 wo,
     const double w = mix_drawn(m);
     const bool second = u.z < w;
     struct vec3 left = rest(u, w, second);
-    if (m->fault == REMAP) { /* the lobe is drawn by its first number here */
+    if (m->fault == REMAP || m->fault == BY_FIRST) {
         left = (struct vec3){ left.z, u.y, u.x };
-        if (!second)
+        if (m->fault == REMAP && !second)
             left.x = mixed(left.x, (u.z - w) / w, m->size);
     }
     struct bsdf_sample s = bsdf_sample(second ? m->b : m->a, wo, left);

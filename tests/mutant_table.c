@@ -212,6 +212,9 @@ const struct mutant mutant_controls[] = {
     { CONTROL("pane", .type = &type_broken_pane, "fault=none"), FROM(50, 140) },
     { CONTROL("mix", MIX, "fault=none"), FROM(50) },
     { CONTROL("mix_tints", MIX, "fault=none,tint=0.8/0.5/0.2"), FROM(50) },
+    { CONTROL("mix_by_first", MIX,
+              "fault=by_first,tint=0.3,b=(roughconductor:alpha=0.01)"),
+      FROM(10, 50) },
     { CONTROL("mix_transmits", MIX,
               "fault=none,a=(roughdielectric:lobes=transmission,alpha=0.3),"
               "b=(diffuse)"),

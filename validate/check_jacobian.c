@@ -9,7 +9,9 @@
  * Derivatives are central differences of two steps, extrapolated; what the two
  * differ by is in the limit, with the precision and what rounding explains.
  * Where they differ by more than 1 % the map has a kink between them; where a
- * sample nearby comes from elsewhere in u the lobes overlap.  Such points are
+ * sample nearby comes from elsewhere in u, or the map jumps as it does where a
+ * lobe is chosen by a number that moves the direction too, a pdf that is more
+ * than the map gives may be that of overlapping lobes.  Such points are
  * counted, and where they are more than one in 20, or all three numbers move
  * the direction, the check does not apply.
  */
@@ -57,6 +59,116 @@ static bool other_source(const struct room *r, const struct jacobian_point *p,
     return false;
 }
 
+/* Between two numbers on a line along an axis, what they lead to. */
+struct between {
+    double low, high;
+    struct bsdf_sample at_low, at_high;
+    double whole; /* how far apart that was at first */
+};
+enum { LOOKS = 1024, STEPS_MAX = 64 };
+
+/* Directions along an axis through a point, at up to LOOKS numbers. */
+static void line(const struct subject *s, const struct jacobian_point *p,
+                 int axis, const double *at, size_t n, struct bsdf_sample *out)
+{
+    double u[3][LOOKS];
+    for (size_t i = 0; i < n; i++)
+        for (int k = 0; k < 3; k++)
+            u[k][i] = k == axis ? at[i] : p->u[k];
+    subject_sample(s, n, (struct dirs){ u[0], u[1], u[2] }, out);
+}
+
+/* How far apart two directions on one side are; 0 if they are not on one. */
+static double distance(const struct bsdf_sample *a, const struct bsdf_sample *b)
+{
+    return subject_spread(a) && subject_spread(b) && a->wi.z * b->wi.z > 0
+               ? vec3_length(vec3_minus(a->wi, b->wi))
+               : 0;
+}
+
+/* How far two steps that follow one another are from being the same, over the
+ * longer one. */
+static double bend(const struct bsdf_sample *at)
+{
+    const double before = distance(&at[0], &at[1]);
+    const double after = distance(&at[1], &at[2]);
+    const struct vec3 off = vec3_minus(vec3_minus(at[2].wi, at[1].wi),
+                                       vec3_minus(at[1].wi, at[0].wi));
+    return before > 0 && after > 0 ? vec3_length(off) / fmax(before, after) : 0;
+}
+
+/* Steps that may be jumps: those that are unlike the ones beside them, and
+ * those to or from what is refused. */
+static size_t steps_find(const struct subject *s,
+                         const struct jacobian_point *p, int axis,
+                         struct between step[STEPS_MAX])
+{
+    const double unlike = 0.5;
+    double at[LOOKS];
+    struct bsdf_sample look[LOOKS];
+    size_t n = 0;
+    for (int i = 0; i < LOOKS; i++)
+        at[i] = (i + 0.5) / LOOKS;
+    line(s, p, axis, at, LOOKS, look);
+    for (int i = 0; i + 1 < LOOKS && n < STEPS_MAX; i++)
+        if (subject_spread(&look[i]) != subject_spread(&look[i + 1]) ||
+            (i > 0 && bend(look + i - 1) > unlike) ||
+            (i + 2 < LOOKS && bend(look + i) > unlike))
+            step[n++] =
+                (struct between){ at[i], at[i + 1], look[i], look[i + 1],
+                                  distance(&look[i], &look[i + 1]) };
+    return n;
+}
+
+/* Nearer to where most of a step is, or to where refusal ends: a lobe that is
+ * cut off at the horizon is followed by one that begins elsewhere. */
+static void step_halve(struct between *b, double middle,
+                       const struct bsdf_sample *found)
+{
+    const bool low = subject_spread(&b->at_low);
+    const bool high = subject_spread(&b->at_high);
+    const bool here = subject_spread(found);
+    const bool up = low && high ? !here || distance(found, &b->at_high) >
+                                               distance(&b->at_low, found)
+                                : here == low;
+    *(up ? &b->low : &b->high) = middle;
+    *(up ? &b->at_low : &b->at_high) = *found;
+}
+
+/* What is left of a step is most of it, or is refused on one side and far from
+ * the horizon on the other. */
+static bool is_jump(const struct between *b)
+{
+    const bool low = subject_spread(&b->at_low);
+    const bool high = subject_spread(&b->at_high);
+    return low && high ? distance(&b->at_low, &b->at_high) > 0.25 * b->whole
+                       : fabs((low ? b->at_low : b->at_high).wi.z) > 0.05;
+}
+
+/* Whether the map jumps on the line along an axis through a point: so a lobe is
+ * chosen by a number that moves the direction, and another lobe may lead to the
+ * same one. */
+static bool jumps(const struct subject *s, const struct jacobian_point *p,
+                  int axis)
+{
+    enum { HALVINGS = 30 };
+    struct between step[STEPS_MAX];
+    const size_t n = steps_find(s, p, axis, step);
+    for (int k = 0; k < HALVINGS; k++) {
+        double middle[STEPS_MAX];
+        struct bsdf_sample found[STEPS_MAX];
+        for (size_t i = 0; i < n; i++)
+            middle[i] = (step[i].low + step[i].high) / 2;
+        line(s, p, axis, middle, n, found);
+        for (size_t i = 0; i < n; i++)
+            step_halve(&step[i], middle[i], &found[i]);
+    }
+    for (size_t i = 0; i < n; i++)
+        if (is_jump(&step[i]))
+            return true;
+    return false;
+}
+
 static void judge(const struct subject *s, struct verdict *v, struct room *r)
 {
     const struct rng rng = subject_rng(s, STREAM_PILOT);
@@ -89,7 +201,8 @@ static void judge(const struct subject *s, struct verdict *v, struct room *r)
             if (!drawn)
                 subject_draw(s, rng, 0, AROUND, r->around);
             drawn = true;
-            if (other_source(r, p, rng)) {
+            if (overlaps > spoiled_share * POINTS || other_source(r, p, rng) ||
+                jumps(s, p, p->axis[0]) || jumps(s, p, p->axis[1])) {
                 overlaps++;
                 continue;
             }

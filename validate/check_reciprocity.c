@@ -32,7 +32,8 @@ static void ask(struct room *r, struct vec3 wi)
 }
 
 /* Keeps the deviation that exceeds its limit most.  The limit costs further
- * calls, and is at least the precision. */
+ * calls, and is at least the precision: what rounding may do to f either way,
+ * and no less than twice what it may do to f(wo, wi). */
 static void keep(const struct subject *s, struct verdict *v, struct vec3 wi,
                  double off, struct spectrum there, struct spectrum back,
                  double n2)
@@ -40,7 +41,10 @@ static void keep(const struct subject *s, struct verdict *v, struct vec3 wi,
     const double best = v->value / v->limit, precision = subject_precision(s);
     if (!(off / precision > best) && !isnan(off))
         return;
-    const double limit = precision + 2 * subject_rounding(s, wi, false);
+    const struct subject other = subject_plain(s->bsdf, wi, s->plan);
+    const double one_way = subject_rounding(s, wi, false);
+    const double other_way = subject_rounding(&other, s->wo, false);
+    const double limit = precision + one_way + fmax(one_way, other_way);
     if (!(off / limit > best) && !isnan(off))
         return;
     v->value = off;

@@ -196,26 +196,35 @@ double subject_unit_error(const struct subject *s)
 double subject_rounding(const struct subject *s, struct vec3 wi, bool of_pdf)
 {
     /* 2^-40 for double: small, and yet seen with some digits. */
-    const double step = pow(s->claims.epsilon, 10. / 13);
+    const double e = s->claims.epsilon, step = pow(e, 10. / 13);
     const struct frame frame = frame_about(wi);
-    const struct vec3 a = vec3_unit(vec3_add(wi, vec3_scale(step, frame.s)));
-    const struct vec3 b = vec3_unit(vec3_add(wi, vec3_scale(step, frame.t)));
-    const double x[] = { wi.x, a.x, b.x }, y[] = { wi.y, a.y, b.y },
-                 z[] = { wi.z, a.z, b.z };
+    enum { LOOKS = 7, SLOPES = 3 };
+    /* By a step each way, and to neighbours of wi itself. */
+    const double along[LOOKS] = { 0, step, 0, 4 * e, -4 * e, 0, 0 };
+    const double across[LOOKS] = { 0, 0, step, 0, 0, 4 * e, -4 * e };
+    double x[LOOKS], y[LOOKS], z[LOOKS], value[LOOKS] = { 0 };
+    for (int i = 0; i < LOOKS; i++) {
+        const struct vec3 w =
+            vec3_unit(vec3_add(wi, vec3_add(vec3_scale(along[i], frame.s),
+                                            vec3_scale(across[i], frame.t))));
+        x[i] = i ? w.x : wi.x, y[i] = i ? w.y : wi.y, z[i] = i ? w.z : wi.z;
+    }
     const struct dirs at = { x, y, z };
-    double value[3] = { 0, 0, 0 }, most = 0;
     if (of_pdf) {
-        subject_pdf(s, 3, at, value);
+        subject_pdf(s, LOOKS, at, value);
     } else {
-        struct spectrum f[3];
-        subject_eval(s, 3, at, f);
-        for (int i = 0; i < 3; i++)
+        struct spectrum f[LOOKS];
+        subject_eval(s, LOOKS, at, f);
+        for (int i = 0; i < LOOKS; i++)
             for (int k = 0; k < BANDS_MAX; k++)
                 value[i] = fmax(value[i], f[i].band[k]);
     }
-    for (int i = 1; i < 3; i++)
-        most = fmax(most, fabs(value[i] / value[0] - 1));
-    return fmin(16 * s->claims.epsilon / step * most, 0.5);
+    double most = 0, noise = 0;
+    for (int i = 1; i < LOOKS; i++) {
+        double *const to = i < SLOPES ? &most : &noise;
+        *to = fmax(*to, fabs(value[i] / value[0] - 1));
+    }
+    return fmin(16 * e / step * most + 4 * noise, 0.5);
 }
 
 double subject_typical_rounding(const struct subject *s, const struct vec3 *wi,

@@ -100,7 +100,8 @@ double subject_unit_error(const struct subject *s);
 
 /** How far the model's arithmetic may put the pdf, or the largest band of f,
  * off at wi, relative to it: the relative change when wi moves a little, scaled
- * to 16 roundings of epsilon; at most 0.5. */
+ * to 16 roundings of epsilon, and four times that to neighbours of wi, where a
+ * difference of large numbers shows; at most 0.5. */
 double subject_rounding(const struct subject *s, struct vec3 wi, bool of_pdf);
 
 /** The median of that over n directions, 65 of them where there are more; 0 of
