@@ -287,6 +287,14 @@ static void the_cosine_and_the_precision_are_as_said(void **state)
     bsdf_free(single);
 }
 
+/* It shows no facets: they are seen in its samples. */
+static void masking_is_named(void **state)
+{
+    (void)state;
+    ends("bsdf-validate ./ggx.so:fault=13 --samples 1000 --wo 60,0", 1);
+    assert_has(output, "missing masking G1(wi) (explains 100 % of the");
+}
+
 static void a_students_metal_is_caught(void **state)
 {
     (void)state;
@@ -580,6 +588,7 @@ int main(void)
         { "light from wo becomes radiance", light_from_wo_becomes_radiance },
         { "the cosine and the precision are as said",
           the_cosine_and_the_precision_are_as_said },
+        { "missing masking is named", masking_is_named },
         { "a student's metal is caught", a_students_metal_is_caught },
         { "pictures show them too", pictures_show_them_too },
         { "each misbehaviour is a verdict", each_misbehaviour_is_a_verdict },

@@ -36,6 +36,9 @@ enum { CLUES_MAX = 1024 };
 struct clues {
     size_t n;
     struct clue clue[CLUES_MAX];
+    /* What samples say of the facets of a model that shows none, or NULL;
+     * borrowed. */
+    const struct facets_fit *fit;
 };
 
 /** D(m) of the facets [1/sr]. */

@@ -149,6 +149,12 @@ double factors_explain_by(const struct clues *clues, enum clue_scope scope,
                                        log(clues->clue[i].ratio) };
     if (n > 0)
         qsort(o, n, sizeof *o, by_angle);
+    /* A constant is no function of an angle. */
+    double mean = 0;
+    for (size_t i = 0; i < n; i++)
+        mean += o[i].x / (double)n;
+    for (size_t i = 0; i < n; i++)
+        o[i].x -= mean;
     for (size_t i = AROUND; i + AROUND < n; i++) {
         double sum = 0;
         for (size_t k = i - AROUND; k <= i + AROUND; k++)

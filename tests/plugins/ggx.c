@@ -33,12 +33,13 @@ enum {
     FLOAT,
     FLOAT_SAID,
     ABORT,
-    REFUSE
+    REFUSE,
+    MASKED_ONCE
 };
 
 static const struct bsdf_plugin_param params[] = {
     { "alpha", 0.3, 0.001, 1, "roughness" },
-    { "fault", 0, 0, 12, "what goes wrong" },
+    { "fault", 0, 0, 13, "what goes wrong" },
     { "at", 0.5, -1, 2, "where wi.z (eval, pdf) is above: there it does" },
     { 0 },
 };
@@ -125,7 +126,8 @@ static double value(const double *m, const double *in)
     if (!half(in, in + 3, h))
         return 0;
     return d(m[ALPHA], h) /
-           (1 + lambda(m[ALPHA], in) + lambda(m[ALPHA], in + 3)) /
+           (1 + lambda(m[ALPHA], in) +
+            (m[FAULT] == MASKED_ONCE ? 0 : lambda(m[ALPHA], in + 3))) /
            (4 * in[2] * in[5]);
 }
 
