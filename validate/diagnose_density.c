@@ -234,7 +234,8 @@ void diagnose_support(struct guess *g, const struct subject *s)
         suggest_rank(g, 0.9,
                      "samples are -wi for wi, the way that light travels: most "
                      "are below the horizon");
-    suggest_rank(g, 0.85, "mass below the horizon");
+    suggest_rank(g, 0.85, "mass below the horizon%s",
+                 below ? ", where samples go" : ", of f");
 }
 
 void diagnose_density(struct guess *g, const struct subject *s,

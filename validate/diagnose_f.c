@@ -52,13 +52,14 @@ void diagnose_reciprocity(struct guess *g, const struct subject *s,
                            mistake[i].power, true),
                 "%s%s", mistake[i].text, scope_text[scope]);
     suggest_constant(g, clues, scope, "f, over f turned round,");
-    /* Functions that are free to fit cost something. */
+    /* Functions that are free to fit cost something.  Masking is one where it
+     * could not be tried itself. */
+    const bool masked = !isnan(clues->clue[0].g1_i);
     g->exact = false;
     suggest(g, factors_explain_by(clues, scope, angle_i) - 0.02,
             "Fresnel at the wrong angle: f turned round differs by a factor "
-            "that depends on n.wi alone, as F at n.wi for wi.h would, or "
-            "masking of one direction%s",
-            scope_text[scope]);
+            "that depends on n.wi alone, as F at n.wi for wi.h%s would%s",
+            masked ? "" : ", or masking of one direction,", scope_text[scope]);
     suggest(g, factors_explain_by(clues, scope, angle_h) - 0.02,
             "Fresnel at the wrong angle: f turned round differs by a factor "
             "that depends on wi.h alone, as F of one side taken for the "
