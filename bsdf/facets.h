@@ -80,13 +80,6 @@ INLINE double facets_d(struct facets f, struct vec3 m, double m2)
     return facets_p22(f, d.slope2) * (d.t * d.t);
 }
 
-/** D(m) m.z / m2. */
-INLINE double facets_d_z(struct facets f, struct vec3 m, double m2)
-{
-    const struct facets_part d = facets_part(f, m, m2);
-    return facets_p22(f, d.slope2) * (d.t * (d.inverse * m.z));
-}
-
 /** How long the horizontal part of w is where the roughness is 1, squared. */
 INLINE double facets_sine2(struct facets f, struct vec3 w)
 {

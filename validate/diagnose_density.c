@@ -164,13 +164,20 @@ static void suggest_coat(struct guess *g, const struct clues *clues)
             best_eta);
 }
 
+/* Whether a bin is on the other side, where the model claims no lobe. */
+static bool bin_below(const struct subject *s, size_t bin)
+{
+    const struct patch p = partition_patch(s->survey.partition, bin);
+    return !(s->claims.lobes & BSDF_TRANSMISSION) &&
+           patch_centre(p).z * s->wo.z < 0;
+}
+
 static void suggest_below(struct guess *g, const struct subject *s)
 {
     const struct survey *v = &s->survey;
-    const bool through = s->claims.lobes & BSDF_TRANSMISSION;
     struct estimate below = { 0, 0 };
-    for (size_t i = 0; !through && i < partition_bins(v->partition); i++)
-        if (patch_centre(partition_patch(v->partition, i)).z * s->wo.z < 0)
+    for (size_t i = 0; i < partition_bins(v->partition); i++)
+        if (bin_below(s, i))
             below = estimate_add(below, v->mass[i]);
     if (below.value > below.error + 1e-9)
         suggest_rank(g, 1, "mass below the horizon: %.3g of the pdf's",
@@ -224,10 +231,9 @@ static void suggest_refused(struct guess *g, const struct subject *s,
 void diagnose_support(struct guess *g, const struct subject *s)
 {
     const struct survey *v = &s->survey;
-    const bool through = s->claims.lobes & BSDF_TRANSMISSION;
     uint64_t below = 0;
-    for (size_t i = 0; !through && i < partition_bins(v->partition); i++)
-        if (patch_centre(partition_patch(v->partition, i)).z * s->wo.z < 0)
+    for (size_t i = 0; i < partition_bins(v->partition); i++)
+        if (bin_below(s, i))
             below += v->count[i];
     suggest_below(g, s);
     if (below > v->samples / 2)

@@ -198,10 +198,10 @@ void diagnose_facets(struct guess *g, const struct subject *s,
     struct facets_fit fit;
     double ratio[CLUES_MAX];
     struct implied f[MASKINGS][2], right = { INFINITY, 0 };
-    if (!facets_fit_shown(s, &fit)) {
-        if (!fit_drawn(s, clues, &fit))
-            return;
-    }
+    if (clues->fit)
+        fit = *clues->fit;
+    else if (!facets_fit_shown(s, &fit) && !fit_drawn(s, clues, &fit))
+        return;
     if (!gather_facets(s, &fit, clues))
         return;
     for (size_t i = 0; i < clues->n; i++)
@@ -245,10 +245,9 @@ static double largest_albedo(const struct subject *s)
 void diagnose_constant(struct guess *g, const struct subject *s)
 {
     const unsigned matt = BSDF_DIFFUSE_REFLECTION | BSDF_DIFFUSE_TRANSMISSION;
-    const unsigned rough =
-        matt | BSDF_GLOSSY_REFLECTION | BSDF_GLOSSY_TRANSMISSION;
     const double limit = 1 + 1e-6, most = largest_albedo(s);
-    if (!(most > limit) || most > 4 * PI || !(s->claims.lobes & rough))
+    if (!(most > limit) || most > 4 * PI ||
+        !(s->claims.lobes & ~(unsigned)BSDF_DELTA))
         return;
     struct plan few = *s->plan;
     struct subject above;
@@ -258,7 +257,14 @@ void diagnose_constant(struct guess *g, const struct subject *s)
         return;
     const double there = largest_albedo(&above);
     subject_clear(&above);
-    const bool pi = !(s->claims.lobes & ~matt) && most <= PI * limit;
+    static const struct {
+        const char *name;
+        double value;
+    } constant[] = { { "pi", PI }, { "2", 2 }, { "4", 4 }, { "4 pi", 4 * PI } };
+    const int k = !(s->claims.lobes & ~matt) && most <= PI * limit ? 0
+                  : most <= 2 * limit                              ? 1
+                  : most <= 4 * limit                              ? 2
+                                                                   : 3;
     if (there <= limit)
         suggest_rank(g, 0.85,
                      "f is too large toward the horizon alone, as where "
@@ -269,15 +275,7 @@ void diagnose_constant(struct guess *g, const struct subject *s)
         suggest_rank(g, 0.85,
                      "f lacks a division by a constant of at least %.3g: the "
                      "factor %s too many would give an albedo of %.3g",
-                     most,
-                     pi                  ? "pi"
-                     : most <= 2 * limit ? "2"
-                     : most <= 4 * limit ? "4"
-                                         : "4 pi",
-                     most / (pi                  ? PI
-                             : most <= 2 * limit ? 2
-                             : most <= 4 * limit ? 4
-                                                 : 4 * PI));
+                     most, constant[k].name, most / constant[k].value);
 }
 
 static const char *constant_name(double x)

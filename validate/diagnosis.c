@@ -52,9 +52,10 @@ void diagnose(const struct subject *s, struct verdict *verdict)
         diagnose_facets(&f, s, clues);
     put_by_name(verdict, "support", &support);
     put_by_name(verdict, "sample", &sample);
-    const struct guess *where = guess_named(&density) ? &density : &support;
-    put_by_name(verdict, "pdf", where->text[0] ? where : &density);
-    put_by_name(verdict, "chi2", where->text[0] ? where : &density);
+    const struct guess *where =
+        guess_named(&support) && !guess_named(&density) ? &support : &density;
+    put_by_name(verdict, "pdf", where);
+    put_by_name(verdict, "chi2", where);
     put_by_name(verdict, "jacobian", &density);
     put_by_name(verdict, "furnace", &facets);
     put_by_name(verdict, "delta", &delta);
